@@ -162,6 +162,25 @@ def test_an_edge_by_a_named_sensor(render):
     assert truth["mtf_nyquist"] == pytest.approx(0.2667, abs=1e-4)
 
 
+def test_an_image_narrower_than_the_blur_is_told(render):
+    _, _, result = render("edge", "--gaussian", 50)
+    assert "FWHM" in result.stdout
+    assert "no FWHM within 32 px" in result.stdout
+    assert "31 % of the edge's rise: 40 px across it are narrower than the blur" in result.stderr
+    _, _, result = render("edge", "--gaussian", 2)
+    assert "narrower than" not in result.stderr
+
+
+def test_a_gsd_leaves_metres_of_a_sensor_file(render, tmp_path):
+    path = tmp_path / "metres.toml"
+    path.write_text("gsd_m = 0.5\n[[block]]\nkind = 'Gaussian'\nsigma_m = 0.2\n", encoding="utf-8")
+    image, truth, _ = render("edge", "--sensor", path, "--gsd", 1)
+    assert image.gsd().row_m == 1.0
+    assert truth["sensor"]["blocks"][0]["sigma_px"] == pytest.approx(0.2)
+    _, truth, _ = render("edge", "--sensor", "generic-2005", "--gsd", 2)
+    assert truth["sensor"]["blocks"][0]["sigma_px"] == 0.39
+
+
 def test_the_budget_of_a_sensor(acutance, tmp_path):
     figure, toml = tmp_path / "budget.svg", tmp_path / "sensor.toml"
     result = acutance(

@@ -59,6 +59,20 @@ def test_every_block_goes_round():
         assert sensor_file_from_toml(sensor_file_to_toml(described)) == described
 
 
+@pytest.mark.parametrize("own", ["gsd_m = 0.5\ngsd_along_m = 0.6\n", ""])
+def test_another_gsd_leaves_metres_what_they_are(tmp_path, own):
+    path = tmp_path / "metres.toml"
+    blocks = (
+        "[[block]]\nkind = 'Gaussian'\nsigma_m = 0.2\nsigma_along_m = 0.3\n"
+        "[[block]]\nkind = 'Detector'\nwidth_px = 0.9\n"
+    )
+    path.write_text(own + blocks, encoding="utf-8")
+    gaussian, detector = optics.Gaussian(0.2, 0.3), optics.Detector(0.9)
+    assert read_sensor(path, gsd_m=1.0) == Sensor([gaussian, detector], gsd_m=1.0)
+    if own:
+        assert read_sensor(path).blocks[0] == optics.Gaussian(0.4, 0.5)
+
+
 def test_a_file_goes_round(tmp_path):
     path = tmp_path / "sensor.toml"
     write_sensor(preset("generic-2005"), path)

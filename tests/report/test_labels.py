@@ -6,8 +6,10 @@ from dataclasses import replace
 import pytest
 
 from acutance.curves import METRICS, Estimate
+from acutance.report import page, text
 from acutance.report.labels import (
     METRIC_WORDS,
+    describe_image,
     flatten_options,
     format_number,
     metric_words,
@@ -97,3 +99,14 @@ def test_nested_options_become_dotted_names():
     options = {"robust": False, "seed": None, "limits": {"snr": 50.0}}
     shown = {"robust": "no", "seed": "–", "limits.snr": "50"}
     assert dict(flatten_options(options)) == shown
+
+
+def test_what_was_stated_and_another_centre_stand_in_the_header(measurement):
+    assert "stated" not in describe_image(measurement)
+    assert "RER centre" not in describe_image(measurement)
+    stated = replace(
+        measurement, options={**measurement.options, "level_uncertainty": 0.2, "rer_centre": "peak"}
+    )
+    for shown in (describe_image(stated), text(stated), page(stated)):
+        assert "20 %" in shown
+        assert "the LSF's peak" in shown.replace("&#39;", "'").replace("&#x27;", "'")

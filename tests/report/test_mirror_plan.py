@@ -36,3 +36,9 @@ def test_mirrors_too_large_for_a_field_are_told():
     plan = plan_mirrors(MirrorPlanOptions(optics.Sensor(SENSOR.blocks, gsd_m=70.0), draws=0))
     assert "note: caps 62.4 m across" in mirror_plan_text(plan)
     assert "note" not in mirror_plan_text(replace(plan, diameter_m=1.0))
+
+
+def test_a_single_mirror_stands_in_one_column():
+    plan = plan_mirrors(MirrorPlanOptions(SENSOR, count=1, draws=0))
+    assert "1 mirrors in 1 columns" in mirror_plan_text(plan)
+    assert len(plan.layout.places_px) == 1

@@ -257,6 +257,22 @@ def test_other_pixels_and_another_band_are_refused(sharpening, tmp_path):
         ac.restore(several, sharpening, out=out, bands=7, accept_mismatch=True)
 
 
+def test_an_image_restored_before_is_restored_again(sensor, sharpening, tmp_path):
+    first, second, third = (str(tmp_path / f"{name}.tif") for name in "abc")
+    ac.restore(scene(tmp_path), sharpening, out=first)
+    with pytest.raises(ac.OptionError, match="was restored before"):
+        ac.restore(first, sharpening, out=second)
+    other = ac.design_restoration(sensor, noise_gain=1.5, size=5)
+    ac.restore(first, other, out=second, accept_mismatch=True)
+    ac.restore(second, sharpening, out=third, accept_mismatch=True)
+    tags = [rewriting.stored_tags(path) for path in (first, second, third)]
+    applied = [one["ACUTANCE_RESTORATION"] for one in tags]
+    assert ["noise gain 1.8" in one for one in applied] == [True, False, True]
+    assert "kernel 5x5" in applied[1]
+    assert [one.get("ACUTANCE_RESTORATION_BEFORE") for one in tags] == [
+        None, applied[0], f"{applied[0]} | {applied[1]}"]  # fmt: skip
+
+
 def test_a_filter_without_a_band_needs_one_of_several(sensor, tmp_path):
     filter = ac.design_restoration(sensor, noise_gain=1.5, size=5)
     with pytest.raises(ac.OptionError, match="say which"):

@@ -219,3 +219,27 @@ def test_an_snr_goes_with_noise_that_leaves_the_strength_open():
         edge(SENSOR, snr=100.0, noise=Noise(read=3.0), rng=np.random.default_rng(1))
     with pytest.raises(ModelError, match="saturation is nan"):
         Noise(saturation=NAN)
+
+
+@pytest.mark.parametrize(
+    ("render", "described"),
+    [
+        (edge, {"dark": 200.0}),
+        (pulse, {"dark": 300.0, "right_dark": 200.0}),
+        (bars, {"dark": 200.0}),
+        (star, {"dark": 200.0}),
+        (checkerboard, {"dark": 200.0, "bright": 900.0, "ground": 700.0}),
+        (points, {"positions": [(12.0, 12.0)], "background": 200.0}),
+    ],
+)
+def test_a_saturation_at_the_lowest_level_is_refused(render, described):
+    with pytest.raises(ModelError, match="saturation is 200 and the lowest level 200"):
+        render(SENSOR, noise=Noise(saturation=200.0), **described)
+    render(SENSOR, noise=Noise(saturation=250.0), **described)
+
+
+def test_shot_noise_of_negative_signal_is_refused():
+    rng = np.random.default_rng(1)
+    with pytest.raises(ModelError, match=r"shot_gain is 1 and the lowest level -200"):
+        edge(SENSOR, dark=-200.0, bright=100.0, noise=Noise(shot_gain=1.0), rng=rng)
+    edge(SENSOR, dark=-200.0, bright=100.0, noise=Noise(read=1.0), rng=rng)

@@ -42,6 +42,20 @@ def test_the_questions_are_answered(pulse):
     assert rows == math.ceil(30 * (expected / 0.005) ** 2)
 
 
+@pytest.mark.parametrize(
+    ("accuracy", "rows", "said"),
+    [
+        (0.2, 20, "no more than 20 of them, the fewest that can be measured"),
+        (1e-9, math.inf, "more than the 2000 of them that are planned"),
+        (1e-300, math.inf, "more than the 2000"),
+    ],
+)
+def test_rows_that_are_needed_can_be_planned(accuracy, rows, said):
+    plan = plan_target(PlanOptions(accuracy=accuracy, draws=0), ALONE)
+    assert plan.finding("rows_needed").value == rows
+    assert said in plan.finding("rows_needed").text
+
+
 def test_of_several_widths_the_best_is_planned_and_named():
     options = PlanOptions(target="pulse", widths_px=(1.0, 3.0, 1.5), draws=0)
     plan = plan_target(options, ALONE)

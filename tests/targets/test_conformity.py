@@ -41,6 +41,39 @@ def test_one_near_its_limit_is_not_and_says_how_many_would_tell(edge):
     assert "about 11 measurements" in answer.summary
 
 
+@pytest.mark.parametrize("several", [False, True])
+def test_what_was_stated_is_not_told_by_more_of_the_same_target(several):
+    options = ac.EdgeOptions(level_uncertainty=0.2)
+    image, _ = simulate.edge(SENSOR, angle_deg=6, snr=100, rng=np.random.default_rng(3))
+    found = (
+        ac.measure_edges(image, options=options)
+        if several
+        else ac.measure_edge(image, options=options)
+    )
+    number = found.groups["across"].metrics["mtf_nyquist"] if several else found.mtf_nyquist
+    near, far = found.conformity(
+        *(f"mtf_nyquist >= {number.value - n * number.std:.6f}" for n in (0.5, 1.2))
+    )
+    assert near.word == far.word == "cannot be told yet"
+    assert "more measurements of this target would not tell: levels of the target" in near.summary
+    assert "more measurements of this target would not tell" in far.summary
+    assert "about" not in near.summary
+
+
+def test_what_was_stated_takes_more_measurements():
+    options = ac.EdgeOptions(level_uncertainty=0.005)
+    image, _ = simulate.edge(SENSOR, angle_deg=6, snr=100, rng=np.random.default_rng(3))
+    found = ac.measure_edge(image, options=options)
+    number = found.mtf_nyquist
+    share = next(r.share["mtf_nyquist"] for r in found.budget if r.name == "level_uncertainty")
+    needed = 0.5 * number.std
+    (answer,) = found.conformity(f"mtf_nyquist >= {number.value - 1.6449 * needed:.8f}")
+    assert 0.05 < share < 0.2
+    count = math.ceil((1 - share) / (0.25 - share))
+    assert count > 4
+    assert f"about {count} measurements" in answer.summary
+
+
 def test_who_is_content_with_less_confidence_is_told(edge):
     number = edge.mtf_nyquist
     limit = ToleranceLimit("mtf_nyquist", ">=", number.value - 0.5 * number.std, confidence=0.65)
@@ -121,12 +154,19 @@ def test_probabilities_are_true():
         ("0.1 <= mtf_nyquist", "not of the form"),
         ("contrast >= 0.1", "no number of a measurement"),
         ("up.rer >= 0.1", "not of the form"),
+        ("overshoot <= 0", "overshoot is never below 0; state a limit above"),
+        ("along.mtf_nyquist >= 0", "mtf_nyquist is never below 0"),
+        ("fwhm_m <= -1", "fwhm_m is never below 0"),
         ("", "not of the form"),
     ],
 )
 def test_texts_that_state_no_limit_are_refused(text, said):
     with pytest.raises(ac.OptionError, match=said):
         ToleranceLimit.of(text)
+
+
+def test_a_number_that_may_be_negative_has_a_limit_of_zero():
+    assert ToleranceLimit.of("giqe_h >= 0").limit == 0.0
 
 
 @pytest.mark.parametrize("confidence", [0.5, 1.0, 2.0])

@@ -41,7 +41,9 @@ def plan_mirrors(
     arrangement: Annotated[
         str, typer.Option(metavar="columns|square", help="Slanted columns, or a square.")
     ] = "columns",
-    columns: Annotated[int, typer.Option(metavar="N", help="Number of columns.")] = 2,
+    columns: Annotated[
+        int | None, typer.Option(metavar="N", help="Number of columns: 2, of a single mirror 1.")
+    ] = None,
     spacing: Annotated[
         float | None,
         typer.Option(

@@ -47,7 +47,8 @@ def named_sensor(name: str, gsd_m: float | None = None) -> Sensor:
     ----------
     name : str
     gsd_m : float, optional
-        Another ground sampling distance than the sensor's own: its blur stays the same in pixels.
+        Another ground sampling distance than the sensor's own. What a file states in metres keeps
+        its metres, all other blur stays the same in pixels.
 
     Raises
     ------
@@ -60,18 +61,16 @@ def named_sensor(name: str, gsd_m: float | None = None) -> Sensor:
     from acutance.simulate import reference_systems
 
     ready = {key: one.sensor for key, one in presets().items()} | reference_systems()
-    if name in ready:
-        sensor = ready[name]
-    elif Path(name).suffix.lower() == ".toml":
-        sensor = read_sensor(name)
-    else:
-        raise OptionError(f"the sensor {name} is no .toml file and none of {', '.join(ready)}")
-    if gsd_m is None:
-        return sensor
-    from acutance.raster import Gsd
+    if gsd_m is not None:
+        from acutance.raster import Gsd
 
-    Gsd.given(gsd_m)
-    return replace(sensor, gsd_m=gsd_m, gsd_along_m=None)
+        Gsd.given(gsd_m)
+    if name not in ready:
+        if Path(name).suffix.lower() != ".toml":
+            raise OptionError(f"the sensor {name} is no .toml file and none of {', '.join(ready)}")
+        return read_sensor(name, gsd_m)
+    sensor = ready[name]
+    return sensor if gsd_m is None else replace(sensor, gsd_m=gsd_m, gsd_along_m=None)
 
 
 def sensor_budget(

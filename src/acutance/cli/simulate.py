@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -11,10 +12,12 @@ from acutance.cli.noise import NoiseOptions
 from acutance.cli.option_groups import with_groups
 from acutance.cli.scenes import Seed, SimulatedFiles, parse_size
 from acutance.cli.sensor import BUDGET_EXAMPLE, OptionalSensorName, named_sensor, sensor_budget
+from acutance.cli.terminal import say
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:
     from acutance.optics import Block, Sensor
+    from acutance.simulate import Truth
 
 __all__ = ["EXAMPLE", "app", "edge"]
 
@@ -22,6 +25,9 @@ EXAMPLE = (
     "\b\nExample:\n"
     "  acutance simulate edge --gaussian 0.39 --smear 0.25 --snr 100 --seed 1 --out edge.tif"
 )
+
+_MIN_RISE = 0.9
+"""Less of an edge's rise than this in an image is told."""
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -126,7 +132,22 @@ def edge(
         rng=np.random.default_rng(seed),
     )
     files.write(pixels, seen, truth_document(truth, seen), seed)
-    typer.echo(f"true MTF at Nyquist {truth.mtf_nyquist}, RER {truth.rer}, FWHM {truth.fwhm_px} px")
+    known = math.isfinite(truth.fwhm_px.value)
+    width = f"FWHM {truth.fwhm_px} px" if known else "no FWHM within 32 px"
+    typer.echo(f"true MTF at Nyquist {truth.mtf_nyquist}, RER {truth.rer}, {width}")
+    _say_what_is_cut(seen, truth, shape)
+
+
+def _say_what_is_cut(sensor: Sensor, truth: Truth, shape: tuple[int, int]) -> None:
+    """Tell that an image ends before its edge has risen: nothing can be measured in it."""
+    profile = sensor.profile(truth.line.normal_deg)
+    across = shape[1] if truth.orientation == "across" else shape[0]
+    low, high = profile.esf([profile.half_px - 0.5 * across, profile.half_px + 0.5 * across])
+    if high - low < _MIN_RISE:
+        say(
+            f"note: the image shows {100 * (high - low):.0f} % of the edge's rise: {across} px "
+            "across it are narrower than the blur; give a larger --size, or less blur"
+        )
 
 
 def _sensor(sizes: dict[str, float], gsd_m: float | None) -> Sensor:

@@ -72,12 +72,15 @@ class SensorFile:
     sources: tuple[str, ...] = ()
 
 
-def read_sensor(path: str | os.PathLike[str]) -> Sensor:
+def read_sensor(path: str | os.PathLike[str], gsd_m: float | None = None) -> Sensor:
     """Read a sensor from a TOML file.
 
     Parameters
     ----------
     path : str or path
+    gsd_m : float, optional
+        GSD of square pixels, instead of what the file states: lengths in metres keep their metres,
+        those in pixels their pixels.
 
     Returns
     -------
@@ -96,7 +99,7 @@ def read_sensor(path: str | os.PathLike[str]) -> Sensor:
         raise ModelError(
             f"the sensor file {path} cannot be read ({reason}): check its path"
         ) from error
-    return sensor_file_from_toml(text, os.fspath(path)).sensor
+    return sensor_file_from_toml(text, os.fspath(path), gsd_m).sensor
 
 
 def write_sensor(described: Sensor | SensorFile, path: str | os.PathLike[str]) -> None:
@@ -124,7 +127,9 @@ def write_sensor(described: Sensor | SensorFile, path: str | os.PathLike[str]) -
         ) from error
 
 
-def sensor_file_from_toml(text: str, origin: str = "the sensor") -> SensorFile:
+def sensor_file_from_toml(
+    text: str, origin: str = "the sensor", gsd_m: float | None = None
+) -> SensorFile:
     """Read a sensor's description.
 
     Parameters
@@ -133,6 +138,8 @@ def sensor_file_from_toml(text: str, origin: str = "the sensor") -> SensorFile:
         TOML.
     origin : str, optional
         What to call it in messages: the file's name.
+    gsd_m : float, optional
+        GSD of square pixels, instead of the one that is described.
 
     Raises
     ------
@@ -150,6 +157,8 @@ def sensor_file_from_toml(text: str, origin: str = "the sensor") -> SensorFile:
     if not isinstance(described, list) or not described:
         raise ModelError(f"{origin}: a sensor needs at least one [[block]]")
     sizes = {key: _number(table[key], key, origin) for key in _KEYS[2:4] if key in table}
+    if gsd_m is not None:
+        sizes = {"gsd_m": gsd_m}
     try:
         pixel_m = Sensor([BLOCKS["Detector"].make()], **sizes).pixel_m
         blocks = [
@@ -265,7 +274,10 @@ def _size_m(
 ) -> float:
     """Size of a pixel along the axis a parameter acts on."""
     if pixel_m is None:
-        raise ModelError(f"{origin}: {key} is in metres, which needs gsd_m at the top of the file")
+        raise ModelError(
+            f"{origin}: {key} is in metres, which needs gsd_m at the top of the file "
+            "(or --gsd of the commands that have it)"
+        )
     row_m, col_m = pixel_m
     if row_m == col_m or name in _COL_SIZES:
         return col_m

@@ -99,7 +99,7 @@ def rewrite_image(
     nodata : float, optional
         The stored value of pixels without data, instead of the one the file declares.
     tags : dict of str, optional
-        Metadata items that are added.
+        Metadata items that are added; those of the same names are replaced.
     progress : function of (done, total), optional
         Called with numbers of pixels.
 
@@ -278,7 +278,7 @@ def _copy_descriptions(source: Any, made: Any, tags: dict[str, str]) -> None:
     made.units = [unit or "" for unit in source.units]
     if "IMD" in source.tag_namespaces():
         made.update_tags(ns="IMD", **source.tags(ns="IMD"))
-    made.update_tags(**_items(source), **tags)
+    made.update_tags(**(_items(source) | tags))
     for band in range(1, source.count + 1):
         made.update_tags(band, **_items(source, band))
 

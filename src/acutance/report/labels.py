@@ -328,6 +328,10 @@ def provenance(result: Measurement | Record, max_name: int | None = None) -> dic
         found["linearised"] = image.linearized
     if softness := word_softness(result.options):
         found["stated softness"] = softness
+    if level := result.options.get("level_uncertainty"):
+        found["stated level uncertainty"] = f"{format_number(100 * level)} %"
+    if (centre := result.options.get("rer_centre", "half")) != "half":
+        found["RER centre"] = f"the LSF's {centre}"
     for name, title in (("sensor", "satellite"), ("acquired", "acquired")):
         if result.options.get(name):
             found[title] = str(result.options[name])

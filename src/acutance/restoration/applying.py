@@ -19,11 +19,11 @@ from acutance.errors import ImageError, NoDataError, OptionError
 from acutance.raster import Box, Image, SwathFill, find_swath_fill, open_image
 from acutance.raster.pixels import equals_nodata, largest_count, require_image_array
 from acutance.restoration.filter_match import (
-    RESTORED_TAG,
     chosen_bands,
     match_notes,
     require_match,
     require_unrestored,
+    restored_tags,
 )
 from acutance.restoration.restoration_filter import RestorationFilter
 from acutance.restoration.window_filter import PixelCounts, StoredType, reach_px, restored_window
@@ -226,9 +226,10 @@ def _restore_file(
     chosen = chosen_bands(first, filter, bands)
     images = {band: open_image(path, band, nodata=nodata) for band in chosen}
     _require_fitting(first.shape, filter)
+    earlier = stored_tags(path)
     if not accept_mismatch:
         require_match(first, filter, chosen, bands == "all")
-        require_unrestored(path, stored_tags(path))
+        require_unrestored(path, earlier)
     fills = {band: find_swath_fill(one) for band, one in images.items()}
     kinds = {
         band: _stored_type(
@@ -256,7 +257,7 @@ def _restore_file(
         _require_data(counts, first)
         return pixels
 
-    tags = {RESTORED_TAG: _tag(filter, chosen)}
+    tags = restored_tags(_tag(filter, chosen), earlier)
     rewrite_image(
         path, out, change, bands=chosen, margin_px=reach, nodata=nodata,
         tags=tags, progress=progress,

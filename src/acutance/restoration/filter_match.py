@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Literal
 
 from acutance.errors import OptionError
 from acutance.raster import Image
 from acutance.restoration.restoration_filter import RestorationFilter
 
-__all__ = ["RESTORED_TAG", "chosen_bands", "match_notes", "require_match", "require_unrestored"]
+__all__ = [
+    "chosen_bands",
+    "match_notes",
+    "require_match",
+    "require_unrestored",
+    "restored_tags",
+]
 
 RESTORED_TAG = "ACUTANCE_RESTORATION"
+BEFORE_TAG = "ACUTANCE_RESTORATION_BEFORE"
 _GSD_SHARE = 0.02
 
 
@@ -72,6 +79,20 @@ def require_unrestored(path: str, tags: dict[str, str]) -> None:
             f"{path} was restored before ({tags[RESTORED_TAG]}): a second time would sharpen what "
             "is sharp; give the original, or accept it (accept_mismatch=True, --accept-mismatch)"
         )
+
+
+def restored_tags(applied: str, tags: Mapping[str, str]) -> dict[str, str]:
+    """Items of an image that a filter is applied to: this one, and those of earlier times.
+
+    Parameters
+    ----------
+    applied : str
+        The filter, in a line.
+    tags : mapping of str to str
+        What the image has before.
+    """
+    earlier = [tags[name] for name in (BEFORE_TAG, RESTORED_TAG) if name in tags]
+    return {RESTORED_TAG: applied} | ({BEFORE_TAG: " | ".join(earlier)} if earlier else {})
 
 
 def match_notes(image: Image, filter: RestorationFilter, bands: Sequence[int]) -> tuple[str, ...]:

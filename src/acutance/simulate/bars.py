@@ -206,6 +206,6 @@ def bars(
     image = np.full(shape, float(dark))
     for group in groups:
         add_patches(image, sensor, group.patches(bright - dark))
-    added = noise_of_snr(bright - dark, snr, noise)
+    added = noise_of_snr(bright - dark, snr, noise, dark)
     truth = BarsTruth(sensor, groups, dark, bright, added)
     return (image if added is None else added.added_to(image, rng)), truth

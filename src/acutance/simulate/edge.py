@@ -153,7 +153,7 @@ def edge(
             'polarity="falling" (--falling) turns the edge round'
         )
     line = line_through_centre(shape, angle_deg, orientation, polarity).moved(offset_px, 0.0)
-    added = noise_of_snr(bright - dark, snr, noise)
+    added = noise_of_snr(bright - dark, snr, noise, dark)
 
     def drawn(at: Line, size: tuple[int, int]) -> Floats:
         uneven = 0.0 if ground_noise is None else ground_noise.seen_by(sensor, size, rng)

@@ -65,16 +65,29 @@ class Noise:
         return np.array(noisy)
 
 
-def noise_of_snr(contrast: float, snr: float | None, noise: Noise | None) -> Noise | None:
+def noise_of_snr(
+    contrast: float, snr: float | None, noise: Noise | None, darkest: float | None = None
+) -> Noise | None:
     """The noise of a target: of a given SNR, of a full description, or both.
 
     With both, the SNR is that of the white noise, and the rest is as described.
 
+    Parameters
+    ----------
+    contrast : float
+    snr : float, optional
+    noise : Noise, optional
+    darkest : float, optional
+        The lowest level of the target and its background.
+
     Raises
     ------
     ModelError
-        If both set the strength of the white noise, or the SNR is not above 0.
+        If both set the strength of the white noise, the SNR is not above 0, or the lowest level is
+        saturated or has no shot noise.
     """
+    if noise is not None and darkest is not None:
+        _require_darkest(noise, darkest)
     if snr is None:
         return noise
     require_numbers(snr=snr)
@@ -87,3 +100,17 @@ def noise_of_snr(contrast: float, snr: float | None, noise: Noise | None) -> Noi
             "(--read-noise): both set the white noise, give one of them"
         )
     return replace(described, read=abs(contrast) / snr)
+
+
+def _require_darkest(noise: Noise, darkest: float) -> None:
+    """Refuse noise that the lowest level of an image cannot have."""
+    if noise.saturation is not None and not noise.saturation > darkest:
+        raise ModelError(
+            f"saturation is {noise.saturation:g} and the lowest level {darkest:g}: every pixel "
+            "would be saturated; give a saturation (--saturation) above the lowest level"
+        )
+    if noise.shot_gain > 0 and darkest < 0:
+        raise ModelError(
+            f"shot_gain is {noise.shot_gain:g} and the lowest level {darkest:g}: signal below 0 "
+            "has no shot noise; give levels from 0 on, or leave the shot noise out (--shot-gain)"
+        )

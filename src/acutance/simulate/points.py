@@ -207,7 +207,7 @@ def points(
         for (row, col), flux in zip(places.tolist(), light, strict=True)
     ]
     image = background + render_patches(sensor, sources, shape)
-    added = noise_of_snr(float(light.max()) * brightness, snr, noise)
+    added = noise_of_snr(float(light.max()) * brightness, snr, noise, background)
     truth = PointsTruth(sensor, places, light, background, added)
     return (image if added is None else added.added_to(image, rng)), truth
 

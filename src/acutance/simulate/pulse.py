@@ -248,7 +248,7 @@ def pulse(
     _require_pulse(width_px, length_px, (dark, bright, behind))
     line = line_through_centre(shape, angle_deg, orientation).moved(offset_px, 0.0)
     _require_inside(line, width_px, shape)
-    added = noise_of_snr(bright - 0.5 * (dark + behind), snr, noise)
+    added = noise_of_snr(bright - 0.5 * (dark + behind), snr, noise, min(dark, behind, bright))
 
     def drawn(at: Line, size: tuple[int, int], scale: float = 1.0) -> Floats:
         uneven = 0.0 if ground_noise is None else ground_noise.seen_by(sensor, size, rng)

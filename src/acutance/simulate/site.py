@@ -162,7 +162,7 @@ def checkerboard(
         whole = Patch(*centre, 2 * tile_px, 2 * tile_px, turn_deg, 1.0)
         bare = 1 - render_patches(sensor, [whole], shape)
         image = image + bare * texture(sensor, shape, texture_std, texture_grain_px, drawn)
-    added = noise_of_snr(bright - dark, snr, noise)
+    added = noise_of_snr(bright - dark, snr, noise, min(dark, bright, ground))
     if added is not None:
         image = added.added_to(image, rng)
     edges = tuple(

@@ -284,6 +284,6 @@ def star(
     around = middle if ground is None else ground
     image = np.full(shape, float(around))
     add_star(image, sensor, target, mean=middle - around, amplitude=0.5 * (bright - dark))
-    added = noise_of_snr(bright - dark, snr, noise)
+    added = noise_of_snr(bright - dark, snr, noise, min(dark, around))
     truth = StarTruth(sensor, target, dark, bright, around, added)
     return (image if added is None else added.added_to(image, rng)), truth

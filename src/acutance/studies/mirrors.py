@@ -59,8 +59,8 @@ class MirrorPlanOptions:
         Number of mirrors.
     arrangement : {"columns", "square"}
         Slanted columns, or a square.
-    columns : int
-        Number of columns.
+    columns : int, optional
+        Number of columns; 2 if not given, of a single mirror 1.
     spacing_px : float
         Least distance of neighbours in a column, or in a row of the square.
     snr : float
@@ -85,7 +85,7 @@ class MirrorPlanOptions:
     sensor: Sensor
     count: int = 20
     arrangement: Arrangement = "columns"
-    columns: int = 2
+    columns: int | None = None
     spacing_px: float | None = None
     snr: float = 80.0
     level: float = 0.5
@@ -106,7 +106,7 @@ class MirrorPlanOptions:
             )
         bounds = {
             "count": (self.count, 1, 400),
-            "columns": (self.columns, 1, self.count),
+            "columns": (self.column_count, 1, self.count),
             "spacing_px": (self.min_spacing_px, MIN_SPACING_PX, 100.0),
             "snr": (self.snr, 1.0, 1e6),
             "ground": (self.ground, 0.0, 0.95),
@@ -119,6 +119,11 @@ class MirrorPlanOptions:
         for name, (value, low, high) in bounds.items():
             if not low <= value <= high:
                 raise OptionError(f"{name} is {value:g}: it has to be {low:g} to {high:g}")
+
+    @property
+    def column_count(self) -> int:
+        """The columns requested, or 2, or one for each of fewer mirrors."""
+        return min(2, self.count) if self.columns is None else self.columns
 
     @property
     def min_spacing_px(self) -> float:
@@ -241,7 +246,7 @@ def plan_mirrors(options: MirrorPlanOptions, execution: Execution | None = None)
     along_m = options.sensor.gsd_along_m or gsd_m
     layout = lay_out_mirrors(
         options.count, pixel_m=(along_m, gsd_m), arrangement=options.arrangement,
-        columns=options.columns, spacing_px=options.min_spacing_px,
+        columns=options.column_count, spacing_px=options.min_spacing_px,
     )  # fmt: skip
     share = _peak_share(options.sensor, layout)
     light = (options.level - options.ground) / share
@@ -279,7 +284,7 @@ def _draw(options: MirrorPlanOptions, _: int, rng: np.random.Generator) -> Recor
     """Errors and stated deviations of one simulated image; nan where it is refused."""
     layout = lay_out_mirrors(
         options.count, pixel_m=(1.0, 1.0), arrangement=options.arrangement,
-        columns=options.columns, spacing_px=options.min_spacing_px,
+        columns=options.column_count, spacing_px=options.min_spacing_px,
     )  # fmt: skip
     places = _images_places(layout, rng)
     image, truth = points(options.sensor, positions=places, snr=options.snr, rng=rng)

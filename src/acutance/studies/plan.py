@@ -278,15 +278,7 @@ def _findings(options: PlanOptions, table: Table) -> tuple[Finding, ...]:
             )
         )
     if options.accuracy is not None and math.isfinite(expected):
-        needed = math.ceil(rows * (expected / options.accuracy) ** 2)
-        found.append(
-            Finding(
-                "rows_needed",
-                needed,
-                f"rows: a standard deviation of {options.accuracy:g} needs about {needed} of them "
-                "(it falls with their square root)",
-            )
-        )
+        found.append(_rows_needed(options.accuracy, expected, rows))
     # The rms of n draws is uncertain by one part in sqrt(2 n).
     slack = 1 + max(_NEAR_THE_BEST, 2 / math.sqrt(options.draws) if simulated else 0.0)
     varied = {"angle": ("angle_deg", "deg"), "width": ("target_width_px", "px")}
@@ -308,3 +300,21 @@ def _findings(options: PlanOptions, table: Table) -> tuple[Finding, ...]:
             )
         )
     return tuple(found)
+
+
+def _rows_needed(accuracy: float, expected: float, rows: int) -> Finding:
+    """The rows of a wanted accuracy, where they can be measured and planned."""
+    # A product is infinite where a power would be an error.
+    ratio = expected / accuracy
+    needed = math.ceil(max(_MIN_ROWS, min(rows * ratio * ratio, _MAX_ROWS + 1)))
+    asked = f"rows: a standard deviation of {accuracy:g}"
+    if needed > _MAX_ROWS:
+        text = (
+            f"{asked} needs more than the {_MAX_ROWS} of them that are planned: raise the SNR, or "
+            "measure several targets"
+        )
+    elif needed == _MIN_ROWS:
+        text = f"{asked} needs no more than {needed} of them, the fewest that can be measured"
+    else:
+        text = f"{asked} needs about {needed} of them (it falls with their square root)"
+    return Finding("rows_needed", needed if needed <= _MAX_ROWS else math.inf, text)

@@ -18,6 +18,7 @@ from acutance.curves import METRICS, Estimate
 from acutance.curves.estimate import normal_quantile
 from acutance.errors import OptionError
 from acutance.targets.target_result import TargetResult
+from acutance.targets.uncertainty_budget import STATED_TERMS, TERMS, systematic_share
 
 if TYPE_CHECKING:
     from acutance.targets.measurement import Measurement
@@ -41,12 +42,20 @@ MET: Final = "met"
 NOT_MET: Final = "not met"
 OPEN: Final = "cannot be told yet"
 
+_SIGNED: Final = ("rer", "giqe_h")
+"""Numbers that may fall below 0."""
+
 Numbers = Mapping[str, Mapping[str, Estimate | None]]
 """Numbers by direction and name."""
+
+Parts = Mapping[str, "Sequence[Measurement | Record]"]
+"""The measurements that the numbers of a direction are of."""
 
 _FORM = re.compile(r"(?:(across|along)\.)?(\w+)(>=|<=)([^<>=]+)")
 _MOST: Final = 1000
 """More measurements than this are no answer."""
+_NAMED: Final = 0.1
+"""Stated parts are named from this share of the variance of all of them on."""
 
 
 @dataclass(frozen=True)
@@ -91,6 +100,11 @@ class ToleranceLimit:
             )
         if self.sense not in (">=", "<=") or not math.isfinite(self.limit):
             raise OptionError(f"the requirement {self} has no limit: give a number after >= or <=")
+        if self.limit <= 0 and self.metric not in _SIGNED:
+            raise OptionError(
+                f"the requirement {self} cannot be tested: {self.metric} is never below 0; state a "
+                "limit above"
+            )
         if self.orientation not in (None, "across", "along"):
             raise OptionError(f"a requirement is across or along track, not {self.orientation!r}")
         if not 0.5 < self.confidence < 1:
@@ -203,9 +217,14 @@ def conformity_of(
         If a text states no limit.
     """
     stated = [ToleranceLimit.of(one) if isinstance(one, str) else one for one in limits]
-    numbers, doubts = _of_target(result) if isinstance(result, TargetResult) else _of_one(result)
+    if isinstance(result, TargetResult):
+        numbers, doubts = _of_target(result)
+        parts: Parts = {name: group.measurements for name, group in result.groups.items()}
+    else:
+        numbers, doubts = _of_one(result)
+        parts = dict.fromkeys(numbers, (result,))
     return tuple(
-        _answer(limit, name, numbers, doubts.get(name, ""))
+        _answer(limit, name, numbers, doubts.get(name, ""), parts)
         for limit in stated
         for name in ([limit.orientation] if limit.orientation else numbers)
     )
@@ -247,7 +266,9 @@ def written_probability(probability: float) -> str:
     return "< 0.001" if probability < 0.001 else f"{probability:.3f}"
 
 
-def _answer(limit: ToleranceLimit, orientation: str, numbers: Numbers, doubt: str) -> Conformity:
+def _answer(
+    limit: ToleranceLimit, orientation: str, numbers: Numbers, doubt: str, parts: Parts
+) -> Conformity:
     """The answer to one limit in one direction, or why there is none."""
     if orientation not in numbers:
         reason = f"what was measured shows {' and '.join(numbers)} track only"
@@ -258,7 +279,9 @@ def _answer(limit: ToleranceLimit, orientation: str, numbers: Numbers, doubt: st
         reason = doubt or _missing(limit.metric, number)
         return Conformity(limit, orientation, number, OPEN, None, reason)
     word = conformity_word(probability, limit.confidence)
-    reason = _what_would_tell(limit, number) if word == OPEN else ""
+    reason = ""
+    if word == OPEN:
+        reason = _what_would_tell(limit, number, orientation, parts[orientation])
     return Conformity(limit, orientation, number, word, probability, reason)
 
 
@@ -272,10 +295,47 @@ def _missing(metric: str, number: Estimate | None) -> str:
     return f"{metric} has no value: the curve does not fall so far"
 
 
-def _what_would_tell(limit: ToleranceLimit, number: Estimate) -> str:
+def _what_would_tell(
+    limit: ToleranceLimit,
+    number: Estimate,
+    orientation: str,
+    parts: Sequence[Measurement | Record],
+) -> str:
     """The deviation that would tell, if the value is what it seems."""
     needed = abs(number.value - limit.limit) / normal_quantile(2 * limit.confidence - 1)
-    count = math.ceil((number.std / needed) ** 2) if needed > 0 else math.inf
+    if number.std > math.sqrt(_MOST) * needed:
+        return "the value is too near the limit to be told by more measurements"
+    stated = min(_stated_std(parts, orientation, limit.metric), number.std)
+    if stated >= needed:
+        return (
+            f"more measurements of this target would not tell: {_stated_causes(parts, orientation)}"
+            f" leave a standard deviation of {stated:.2g} to all of them, and {needed:.2g} would "
+            "tell; state it with less uncertainty, or measure another target"
+        )
+    # What was stated remains, the rest falls with the square root of their number.
+    count = math.ceil((number.std**2 - stated**2) / (needed**2 - stated**2))
     if count > _MOST:
         return "the value is too near the limit to be told by more measurements"
     return f"about {count} measurements like this one would tell, as far as their errors differ"
+
+
+def _stated_std(parts: Sequence[Measurement | Record], orientation: str, metric: str) -> float:
+    """What was stated of the target gives this deviation to a number, and to a mean of it."""
+    stds = [
+        number.std * math.sqrt(systematic_share(one.budget, orientation, metric, STATED_TERMS))
+        for one in parts
+        if (number := getattr(one.directions[orientation], metric)) is not None
+    ]
+    return sum(stds) / len(stds) if stds else 0.0
+
+
+def _stated_causes(parts: Sequence[Measurement | Record], orientation: str) -> str:
+    """The stated parts in the words of the budget, the largest first."""
+    shares = {
+        name: max(
+            systematic_share(one.budget, orientation, "", frozenset((name,))) for one in parts
+        )
+        for name in STATED_TERMS
+    }
+    ranked = sorted(shares, key=lambda name: (-shares[name], name))
+    return " and ".join(TERMS[name].label for name in ranked if shares[name] > _NAMED) or "they"

@@ -21,6 +21,7 @@ from acutance.geometry.line import Orientation
 
 __all__ = [
     "MAIN_NUMBERS",
+    "STATED_TERMS",
     "SYSTEMATIC_TERMS",
     "TERMS",
     "BudgetTerm",
@@ -103,6 +104,9 @@ SYSTEMATIC_TERMS = frozenset(
 )
 """Terms that measurements of one sensor share: a mean of a hundred has them in full."""
 
+STATED_TERMS = frozenset(("reference_mtf", "target_softness", "level_uncertainty"))
+"""Those of them that were stated: another measurement of the same target errs by the same."""
+
 
 @dataclass(frozen=True)
 class BudgetTerm:
@@ -178,14 +182,19 @@ def main_stds(response: Response) -> dict[str, float]:
     return {number: getattr(response, number).std for number in MAIN_NUMBERS}
 
 
-def systematic_share(budget: Iterable[BudgetTerm], direction: Orientation, number: str) -> float:
+def systematic_share(
+    budget: Iterable[BudgetTerm],
+    direction: str,
+    number: str,
+    terms: frozenset[str] = SYSTEMATIC_TERMS,
+) -> float:
     """Part of a number's variance that does not average out over measurements of one sensor.
 
-    Of a number without a budget it is the largest of those that have one; one in metres has that of
-    the same in pixels.
+    It is the part of `terms`. Of a number without a budget it is the largest of those that have
+    one; one in metres has that of the same in pixels.
     """
     number = number.removesuffix("_m") + "_px" if number.endswith("_m") else number
-    rows = [row for row in budget if row.direction == direction and row.name in SYSTEMATIC_TERMS]
+    rows = [row for row in budget if row.direction == direction and row.name in terms]
 
     def share(name: str) -> float:
         found = sum(row.share[name] for row in rows)

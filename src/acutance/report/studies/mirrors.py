@@ -39,7 +39,7 @@ def mirror_plan_text(plan: MirrorPlan) -> str:
     along_m, across_m = layout.pixel_m
     if options.arrangement == "columns":
         where = (
-            f"{options.count} mirrors in {options.columns} columns, {layout.apart_px:.2f} px "
+            f"{options.count} mirrors in {options.column_count} columns, {layout.apart_px:.2f} px "
             f"({layout.apart_px * across_m:.2f} m) apart"
         )
         steps = (
