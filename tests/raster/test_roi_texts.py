@@ -174,6 +174,14 @@ def test_pixels_are_not_read_as_degrees_silently(
     np.testing.assert_array_equal(declared.vertices, np.array(ring)[:-1, ::-1])
 
 
+def test_latitude_first_is_told_before_another_reading(write_raster, utm, write_geojson):
+    located = open_image(write_raster("tall.tif", np.ones((200, 60), np.uint8), **utm))
+    swapped = [[lat, lon] for lon, lat in in_lonlat(SQUARE, located)]
+    # As pixels they lie in the image, too: both are numbers below 60.
+    with pytest.raises(RegionError, match=r"latitude is read first: longitude comes first, write"):
+        parse_roi(write_geojson(polygon(swapped)), located)
+
+
 def test_degrees_and_pixels_both_inside_are_degrees(write_raster, write_geojson):
     world = {"crs": "EPSG:4326", "transform": rasterio.Affine(1, 0, -180, 0, -1, 90)}
     image = open_image(write_raster("world.tif", np.ones((180, 360), np.uint8), **world))
