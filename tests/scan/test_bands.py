@@ -219,6 +219,9 @@ def test_a_band_without_edges_is_rejected_and_the_others_stay(bands, noise):
     (rejected,) = several.rejected
     assert rejected.values == {"band": "2"}
     assert "at least 8 are needed" in rejected.reason
+    assert f"none of the {several.scenes['1'].edges.size} straight edges" in rejected.reason
+    assert bands_text(several).startswith("scene in 1 of 2 bands\n")
+    assert "<title>Scene in 1 of 2 bands" in bands_page(several)
     with pytest.raises(ac.NoEdgeError, match="none of the 2 bands"):
         ac.scan_bands([empty, empty + 1])
 
