@@ -230,7 +230,12 @@ def test_the_table_of_edges_has_a_row_of_every_band(found):
     columns = found.edges.columns()
     size = found.scenes["1"].edges.size
     assert columns["band"].tolist() == ["1"] * size + ["2"] * size
+    assert len(found.edges) == found.edges.to_pandas().shape[0] == 2 * size
     assert found.edges.to_csv().startswith("band,row,col")
+    with pytest.raises(ac.OptionError, match=r"lonlat is 'x\.csv': .*write_text\(edges\.to_csv"):
+        found.edges.to_csv("x.csv")
+    with pytest.raises(ac.OptionError, match="give a function"):
+        found.edges.to_geojson("x.geojson")
     assert len(found.edges.to_geojson()["features"]) == 2 * size
 
 
