@@ -103,6 +103,16 @@ def edge():
             ac.RegionError,
             r"\(slice\(0, 20, None\), .* holds slices: give \(row, column, height, width\)",
         ),
+        (lambda: ac.measure_edge(IMAGE, method=["spline"]), ac.OptionError, "no edge method .'spl"),
+        (lambda: ac.measure_pulse(IMAGE, method=["a"]), ac.OptionError, "no pulse method .'a'"),
+        (lambda: ac.measure_star(IMAGE, method=["a"]), ac.OptionError, "no star method .'a'"),
+        (lambda: ac.measure_bars(IMAGE, method=["a"]), ac.OptionError, "no bars method .'a'"),
+        (lambda: ac.measure_points(IMAGE, method=["a"]), ac.OptionError, "no points method .'a'"),
+        (
+            lambda: ac.measure_biresolution(IMAGE[::2, ::2], IMAGE, method=["a"]),
+            ac.OptionError,
+            "no bi-resolution method .'a'",
+        ),
         (lambda: ac.measure_edge(IMAGE, b"0,0,20,20"), ac.RegionError, "the text b'0,0,20,20'"),
         (lambda: ac.measure_pulse(IMAGE, width_px="3"), ac.OptionError, "width_px is '3': .*pixel"),
         (lambda: ac.measure_pulse(IMAGE, width_m="3"), ac.OptionError, "width_m is '3': .*metres"),
@@ -121,6 +131,11 @@ def test_refused_by_name(measure, error, message):
 def test_a_single_measurement_is_no_list(edge):
     with pytest.raises(ac.OptionError, match="a single StraightMeasurement was given: give a list"):
         ac.combine(edge)
+
+
+def test_a_requirement_is_a_text(edge):
+    with pytest.raises(ac.OptionError, match="the requirement is 3, no text: write 'mtf_nyquist"):
+        edge.conformity(3)
 
 
 def test_curves_are_called_at_numbers(edge):

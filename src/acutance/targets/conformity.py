@@ -108,6 +108,11 @@ class ToleranceLimit:
         OptionError
             If it states none.
         """
+        if not isinstance(text, str):
+            raise OptionError(
+                f"the requirement is {text!r:.80}, no text: write 'mtf_nyquist >= 0.09', or give a "
+                "ToleranceLimit"
+            )
         found = _FORM.fullmatch("".join(text.split()))
         try:
             orientation, metric, sense, number = found.groups()  # type: ignore[union-attr]
@@ -202,7 +207,7 @@ def conformity_of(
     OptionError
         If a text states no limit.
     """
-    stated = [ToleranceLimit.of(one) if isinstance(one, str) else one for one in limits]
+    stated = [one if isinstance(one, ToleranceLimit) else ToleranceLimit.of(one) for one in limits]
     numbers, doubts = _of_target(result) if isinstance(result, TargetResult) else _of_one(result)
     return tuple(
         _answer(limit, name, numbers, doubts.get(name, ""))
