@@ -64,7 +64,7 @@ LIBRARIES = {
     "numba": {"numerics"},
     "threadpoolctl": {"numerics"},
     "distributed": {"execution"},
-    "pandas": {"archive"},
+    "pandas": {"archive", "scan"},
     "psycopg": {"archive"},
     "pyarrow": {"archive", "scan"},
     "pydantic": {"archive", "batch", "raster"},

@@ -61,6 +61,39 @@ def test_each_polygon_has_a_result_and_one_without_a_target_is_named(acutance, f
     assert result.stderr == f"acutance: region grass: {reason}\n"
 
 
+def test_features_without_an_inside_are_rejected_and_polygons_measured(acutance, folder, tmp_path):
+    file = tmp_path / "mixed.geojson"
+    write_polygons(file, {"north": PLACES["north"]})
+    document = json.loads(file.read_text())
+    point = {"type": "Point", "coordinates": [3, 4]}
+    document["features"] += [
+        {"type": "Feature", "properties": {"name": "mast"}, "geometry": point},
+        {"type": "Feature", "properties": {}, "geometry": None},
+    ]
+    file.write_text(json.dumps(document))
+    result = measured(acutance, folder, "--json", roi=file)
+    assert result.exit_code == 0, result.stderr
+    found = json.loads(result.stdout)
+    assert [one["region"] for one in found["results"]] == ["north"]
+    reasons = {one["values"]["region"]: one["reason"] for one in found["rejected"]}
+    assert list(reasons) == ["mast", "feature 3"]
+    assert reasons["mast"].startswith("it has a 'Point', which has no inside")
+    assert reasons["feature 3"].startswith("it has no geometry")
+    assert "acutance: region mast: it has a 'Point'" in result.stderr
+
+
+def test_a_region_that_reaches_beyond_the_image_names_the_part(acutance, folder, tmp_path):
+    places = {"north": (-5, -3, 47, 45), "whole": (0, 0, 96, 96)}
+    write_polygons(tmp_path / "out.geojson", places)
+    result = measured(acutance, folder, roi=tmp_path / "out.geojson")
+    assert result.exit_code == 0, result.stderr
+    (note,) = (line for line in result.stderr.splitlines() if "beyond" in line)
+    assert note == (
+        "acutance: region north reaches beyond the image: the part inside, 0,0,41,41 "
+        "(row,col,height,width), is measured"
+    )
+
+
 def test_every_polygon_is_measured_as_it_would_be_alone(acutance, folder, tmp_path):
     write_polygons(tmp_path / "one.geojson", {"field A/1": PLACES["field A/1"]})
     alone = json.loads(measured(acutance, folder, "--json", roi=tmp_path / "one.geojson").stdout)

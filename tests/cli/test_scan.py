@@ -149,7 +149,7 @@ def test_a_page_is_of_the_scene(acutance, scene, tmp_path, shown):
         (("--band", "1,1"), "give the number of every band once", 2),
         (("--band", "1,4"), "band 4 of", 2),
         (("--workers", "2", "--dask", "tcp://host:8786"), "--dask cannot be combined", 2),
-        (("--keep", "nowhere/scan.parts"), "cannot be kept in nowhere", 2),
+        (("--keep", "nowhere/scan.parts"), "the folder nowhere does not exist, make it", 2),
         (("--limit", "rows=9"), "rows", 2),
         (("--roi", "500,0,60,60"), "outside", 2),
     ],

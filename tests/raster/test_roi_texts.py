@@ -8,6 +8,7 @@ import rasterio
 
 from acutance.errors import RegionError
 from acutance.raster import Box, open_image, parse_roi, parse_rois
+from acutance.raster.roi import parse_features
 
 SQUARE = [[9.5, 4.5], [29.5, 4.5], [29.5, 14.5], [9.5, 14.5], [9.5, 4.5]]
 SQUARE_BOX = Box(5, 10, 10, 20)
@@ -172,6 +173,33 @@ def test_pixels_are_not_read_as_degrees_silently(
     assert 'add "crs": "pixel" to the file' in str(refused.value)
     declared = parse_roi(write_geojson(polygon(ring, crs="pixel")), located)
     np.testing.assert_array_equal(declared.vertices, np.array(ring)[:-1, ::-1])
+
+
+def test_features_without_an_inside_leave_the_polygons_theirs(plain, write_geojson):
+    point = {"type": "Point", "coordinates": [3, 4]}
+    line = {"type": "LineString", "coordinates": [[3, 4], [5, 6]]}
+    name = write_geojson(
+        collection(feature(point), feature(polygon(), name="tarp"), feature(line), feature(None))
+    )
+    found = parse_features(name, plain)
+    assert list(found) == ["feature 1", "tarp", "feature 3", "feature 4"]
+    assert found["feature 1"].startswith("it has a 'Point', which has no inside: draw the target")
+    assert "'LineString'" in found["feature 3"]
+    assert found["feature 4"] == "it has no geometry: draw the target as a Polygon"
+    assert list(parse_rois(name, plain)) == ["tarp"]
+    assert parse_roi(name, plain).box(plain.shape) == SQUARE_BOX
+    with pytest.raises(RegionError, match="holds a 'Point', which has no inside"):
+        parse_rois(write_geojson(collection(feature(None), feature(point))), plain)
+    with pytest.raises(RegionError, match="holds no polygon"):
+        parse_rois(write_geojson(collection(feature(None))), plain)
+
+
+def test_latitude_first_is_told_before_another_reading(write_raster, utm, write_geojson):
+    located = open_image(write_raster("tall.tif", np.ones((200, 60), np.uint8), **utm))
+    swapped = [[lat, lon] for lon, lat in in_lonlat(SQUARE, located)]
+    # As pixels they lie in the image, too: both are numbers below 60.
+    with pytest.raises(RegionError, match=r"latitude is read first: longitude comes first, write"):
+        parse_roi(write_geojson(polygon(swapped)), located)
 
 
 def test_degrees_and_pixels_both_inside_are_degrees(write_raster, write_geojson):

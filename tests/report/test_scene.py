@@ -291,4 +291,5 @@ def test_of_too_few_edges_nothing_is_shown_over_the_field(constant):
     for shown in (whole, text(constant)):
         assert shown.count("too few to show how sharpness changes over the field") == 1
     assert constant.to_dict()["field"]["chance_constant"] is None
+    assert np.isnan(constant.field.chance_constant)
     assert repr(constant.field) == "<Field: taken for constant: too few edges to ask>"

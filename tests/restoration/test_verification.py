@@ -50,6 +50,7 @@ def test_a_scene_is_verified_by_its_own_edges():
     )
     for edge in ac.verify_restoration(before, after, filter).edges:
         assert edge.name.endswith("edges")
+        assert edge.normal_deg is None
         assert abs(edge.off) < 0.02
         assert edge.predicted.value > 1.3 * edge.before.value
 
@@ -156,6 +157,8 @@ def test_an_image_of_few_edges_is_verified_by_these(pair):
     filter, before, after = pair
     (edge,) = ac.verify_restoration(before, after, filter).edges
     assert 1 <= edge.count < 8
+    assert edge.name.endswith(", 1 edge" if edge.count == 1 else f", {edge.count} edges")
+    assert (edge.normal_deg is None) == (edge.count > 1)
     assert abs(edge.off) < 2 * np.hypot(edge.after.std, edge.predicted.std)
 
 

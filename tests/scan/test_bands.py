@@ -219,6 +219,9 @@ def test_a_band_without_edges_is_rejected_and_the_others_stay(bands, noise):
     (rejected,) = several.rejected
     assert rejected.values == {"band": "2"}
     assert "at least 8 are needed" in rejected.reason
+    assert f"none of the {several.scenes['1'].edges.size} straight edges" in rejected.reason
+    assert bands_text(several).startswith("scene in 1 of 2 bands\n")
+    assert "<title>Scene in 1 of 2 bands" in bands_page(several)
     with pytest.raises(ac.NoEdgeError, match="none of the 2 bands"):
         ac.scan_bands([empty, empty + 1])
 
@@ -227,7 +230,12 @@ def test_the_table_of_edges_has_a_row_of_every_band(found):
     columns = found.edges.columns()
     size = found.scenes["1"].edges.size
     assert columns["band"].tolist() == ["1"] * size + ["2"] * size
+    assert len(found.edges) == found.edges.to_pandas().shape[0] == 2 * size
     assert found.edges.to_csv().startswith("band,row,col")
+    with pytest.raises(ac.OptionError, match=r"lonlat is 'x\.csv': .*write_text\(edges\.to_csv"):
+        found.edges.to_csv("x.csv")
+    with pytest.raises(ac.OptionError, match="give a function"):
+        found.edges.to_geojson("x.geojson")
     assert len(found.edges.to_geojson()["features"]) == 2 * size
 
 

@@ -129,7 +129,7 @@ def test_the_windows_of_another_scan_are_refused(path, kept, tmp_path):
     with pytest.raises(ac.OptionError, match="another scan: region differs"):
         ac.scan_scene(path, (0, 0, 300, 300), options=OPTIONS, keep=kept)
     copy = shutil.copy(path, tmp_path)
-    with pytest.raises(ac.OptionError, match="another scan: image or band differs"):
+    with pytest.raises(ac.OptionError, match="another scan: name of the image differs"):
         ac.scan_scene(copy, options=OPTIONS, keep=kept)
     found = path.stat()
     os.utime(path, ns=(1, 1))
@@ -159,10 +159,15 @@ def test_how_an_image_is_read_is_part_of_the_scan(path, tmp_path):
     table.write_text("0,0\n1000,900\n3000,3000\n")
     curved = identity(linearize=str(table))
     assert difference(curved, identity(linearize=str(table))) is None
-    for other in (every_value, curved, identity(linearize=2.2)):
-        assert difference(identity(), other) == "image or band"
+    for other in (curved, identity(linearize=2.2)):
+        assert difference(identity(), other).startswith("characteristic curve (linearize, --gamma")
+    assert difference(identity(), every_value) == "nodata value (nodata, --nodata)"
+    assert difference(identity(nodata=7), every_value) == "nodata value (nodata, --nodata)"
     table.write_text("0,0\n1000,901\n3000,3000\n")
-    assert difference(curved, identity(linearize=str(table))) == "image or band"
+    again = difference(curved, identity(linearize=str(table)))
+    assert again.startswith("characteristic curve")
+    two = {"images": [*identity()["images"]] * 2}
+    assert difference(identity(), identity() | two) == "number of bands"
 
 
 def test_an_array_is_known_by_its_pixels(path, tmp_path):
@@ -180,7 +185,7 @@ def test_files_of_others_are_left_alone(path, tmp_path):
     with pytest.raises(ac.OptionError, match="no file of kept windows"):
         ac.scan_scene(path, keep=path)
     assert path.read_bytes() == before
-    with pytest.raises(ac.OptionError, match="cannot be kept in"):
+    with pytest.raises(ac.OptionError, match=r"cannot be kept in .* does not exist, make it"):
         ac.scan_scene(path, keep=tmp_path / "nowhere" / "scan.parts")
     foreign = tmp_path / "foreign.db"
     with sqlite3.connect(foreign) as database:

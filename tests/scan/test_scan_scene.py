@@ -149,6 +149,11 @@ def test_sharpness_at_a_place(ideal):
     for place in ((np.nan, 10), (10, np.nan)):
         with pytest.raises(ac.RegionError, match="rows 0 to 599"):
             scene.at(*place)
+    with pytest.raises(ac.RegionError, match="row is 'a': give a number of pixels"):
+        scene.at("a", 0)
+    for parts in ((0, 3), (3, 2.5)):
+        with pytest.raises(ac.OptionError, match="give a whole number of parts, from 1"):
+            scene.over_field(*parts)
     places = scene.to_dict()["field"]["places"]
     assert len(places) == 9
     assert places[4]["along"]["rer"]["value"] == pytest.approx(0.68, abs=0.02)

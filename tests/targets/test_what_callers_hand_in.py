@@ -40,6 +40,14 @@ def edge():
         (lambda: ac.open_image(None), ac.ImageError, "a NoneType: give the name"),
         (lambda: ac.open_image(IMAGE), ac.ImageError, "an array is measured as it is"),
         (lambda: ac.measure_edge([[1.0, 2.0], [3.0]]), ac.ImageError, "rows of equal length"),
+        (lambda: ac.measure_edges([IMAGE, IMAGE]), ac.ImageError, "holds 2 images"),
+        (lambda: ac.measure_edges([IMAGE, IMAGE[2:]]), ac.ImageError, "holds 2 images.* of pairs"),
+        (lambda: ac.scan_bands(IMAGE), ac.ImageError, "that of one band: .*scan_scene"),
+        (
+            lambda: ac.scan_bands(np.zeros((300, 300, 3))),
+            ac.ImageError,
+            r"\(300, 300, 3\).*moveaxis\(array, -1, 0\), or array\[..., band\]",
+        ),
         (lambda: ac.measure_edge("file.tif"), ac.ImageError, "'file.tif'.*acutance.open_image"),
         (lambda: ac.measure_edge(None), ac.ImageError, "the image is None"),
         (lambda: ac.measure_edge(IMAGE, options={}), ac.OptionError, "type dict: give EdgeOptions"),
@@ -81,6 +89,9 @@ def edge():
         (lambda: ac.Sensor([ac.optics.Detector]), ac.ModelError, "block 1 is .* no OTF"),
         (lambda: ac.Sensor(ac.optics.Detector()), ac.ModelError, "give a list"),
         (lambda: ac.Sensor([ac.optics.Detector()], gsd_m="a"), ac.ModelError, "gsd_m is 'a'"),
+        (lambda: Estimate(0.3, -0.1), ac.OptionError, "deviation of -0.1: .* not below 0"),
+        (lambda: Estimate("a", 1), ac.OptionError, "an estimate of 'a'"),
+        (lambda: Estimate(1, None), ac.OptionError, "deviation of None: give two numbers"),
         (lambda: Estimate(1.0, 0.1).interval(95), ac.OptionError, "between 0 and 1, such as 0.95"),
         (lambda: Estimate(1.0, 0.1).interval(1), ac.OptionError, "between 0 and 1"),
         (lambda: Estimate(1.0, 0.1).interval("a"), ac.OptionError, "between 0 and 1"),
@@ -94,6 +105,16 @@ def edge():
             lambda: ac.measure_edge(IMAGE, np.s_[0:20, 0:20]),
             ac.RegionError,
             r"\(slice\(0, 20, None\), .* holds slices: give \(row, column, height, width\)",
+        ),
+        (lambda: ac.measure_edge(IMAGE, method=["spline"]), ac.OptionError, "no edge method .'spl"),
+        (lambda: ac.measure_pulse(IMAGE, method=["a"]), ac.OptionError, "no pulse method .'a'"),
+        (lambda: ac.measure_star(IMAGE, method=["a"]), ac.OptionError, "no star method .'a'"),
+        (lambda: ac.measure_bars(IMAGE, method=["a"]), ac.OptionError, "no bars method .'a'"),
+        (lambda: ac.measure_points(IMAGE, method=["a"]), ac.OptionError, "no points method .'a'"),
+        (
+            lambda: ac.measure_biresolution(IMAGE[::2, ::2], IMAGE, method=["a"]),
+            ac.OptionError,
+            "no bi-resolution method .'a'",
         ),
         (lambda: ac.measure_edge(IMAGE, b"0,0,20,20"), ac.RegionError, "the text b'0,0,20,20'"),
         (lambda: ac.measure_pulse(IMAGE, width_px="3"), ac.OptionError, "width_px is '3': .*pixel"),
@@ -113,6 +134,11 @@ def test_refused_by_name(measure, error, message):
 def test_a_single_measurement_is_no_list(edge):
     with pytest.raises(ac.OptionError, match="a single StraightMeasurement was given: give a list"):
         ac.combine(edge)
+
+
+def test_a_requirement_is_a_text(edge):
+    with pytest.raises(ac.OptionError, match="the requirement is 3, no text: write 'mtf_nyquist"):
+        edge.conformity(3)
 
 
 def test_curves_are_called_at_numbers(edge):

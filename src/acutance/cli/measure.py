@@ -62,7 +62,7 @@ def measure_target(
     kept = (path, pixels.roi, pixels.linearize, *inputs)
     outputs = Outputs.checked(wanted, kept)
     chosen = kind.load(kind.options)(**options, limits=wanted.limits)
-    images, regions = pixels.open(path)
+    images, regions = pixels.open_features(path)
     parts = [
         _Part(image, region, name if len(regions) > 1 else "", pixels.are_several)
         for image in images
@@ -71,6 +71,8 @@ def measure_target(
     names = methods or kind.methods[:1]
 
     def measure(part: _Part) -> Shown:
+        if isinstance(part.region, str):
+            raise RegionError(part.region)
         given = {**arguments(part.image), "options": chosen}
         if measure_all:
             return _every_target(kind, part.image, part.region, {**given, "method": names[0]})
@@ -90,7 +92,8 @@ class _Part:
     Parameters
     ----------
     image : Image
-    region : Region or None
+    region : Region, str or None
+        Of a feature that is no region the reason.
     name : str
         Of the region, where there are several.
     is_of_bands : bool
@@ -98,7 +101,7 @@ class _Part:
     """
 
     image: Image
-    region: Region | None
+    region: Region | str | None
     name: str
     is_of_bands: bool
 

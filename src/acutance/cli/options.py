@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from acutance.cli.choices import numbers_of, parse_band, parse_limits, parse_share, parse_stated
-from acutance.errors import OptionError
+from acutance.cli.terminal import say
+from acutance.errors import OptionError, RegionError
 from acutance.targets.kinds import KINDS, methods_text
 
 if TYPE_CHECKING:
@@ -152,7 +153,17 @@ class PixelOptions:
         return bands is None or len(bands) > 1
 
     def open(self, path: str) -> tuple[tuple[Image, ...], dict[str, Region | None]]:
+        """As `open_features`; features that are no regions are named on stderr."""
+        images, found = self.open_features(path)
+        for name, one in found.items():
+            if isinstance(one, str):
+                say(f"acutance: region {name}: {one}")
+        return images, {name: one for name, one in found.items() if not isinstance(one, str)}
+
+    def open_features(self, path: str) -> tuple[tuple[Image, ...], dict[str, Region | str | None]]:
         """Open the bands of the image and find the regions the options ask for, by name.
+
+        Of a feature that is no polygon there is the reason why it is no region.
 
         Raises
         ------
@@ -167,7 +178,8 @@ class PixelOptions:
         if self.gamma is not None and self.linearize is not None:
             raise OptionError("--gamma and --linearize both name a curve: give one of them")
         gsd_m = parse_gsd(self.gsd)
-        from acutance.raster import find_site, open_bands, parse_rois, site_region
+        from acutance.raster import Region, find_site, open_bands, site_region
+        from acutance.raster.roi import parse_features
 
         place = None if self.site is None else find_site(self.site)
         images = open_bands(
@@ -178,7 +190,14 @@ class PixelOptions:
             return images, {place.name: site_region(place, images[0])}
         if self.roi is None:
             return images, {"": None}
-        return images, dict(parse_rois(self.roi, images[0]))
+        regions = parse_features(self.roi, images[0])
+        for name, region in regions.items():
+            if isinstance(region, Region) and (inside := _part_inside(region, images[0].shape)):
+                say(
+                    f"acutance: region {name} reaches beyond the image: the part inside, {inside} "
+                    "(row,col,height,width), is measured"
+                )
+        return images, dict(regions)
 
 
 @dataclass(frozen=True)
@@ -299,6 +318,19 @@ class StatedOptions(SoftnessOptions):
         """Fields of the options of an edge or a pulse."""
         level = parse_share("--level-uncertainty", self.level_uncertainty)
         return {**self.softness, "level_uncertainty": level}
+
+
+def _part_inside(region: Region, shape: tuple[int, int]) -> str:
+    """The part of a region that reaches beyond an image, as a box in words; empty of others."""
+    low, high = region.vertices.min(axis=0), region.vertices.max(axis=0)
+    # Centres of pixels that the image would have there.
+    if (low > -1.0).all() and (high <= shape).all():
+        return ""
+    try:
+        return ",".join(map(str, region.box(shape).as_tuple()))
+    except RegionError:
+        # None of it is inside: that is refused, or told, where it is measured.
+        return ""
 
 
 def parse_gsd(text: str | None) -> float | Gsd | None:

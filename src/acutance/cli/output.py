@@ -18,6 +18,7 @@ __all__ = [
     "check_output",
     "make_folder",
     "outputs_of_a_run",
+    "require_folder",
     "require_own_file",
 ]
 
@@ -102,10 +103,7 @@ def check_output(
     if path.suffix.lower() not in endings:
         found = f'"{path.suffix}"' if path.suffix else "nothing"
         raise OptionError(f"{option} {name} ends in {found}, it has to be {' or '.join(endings)}")
-    if not path.parent.is_dir():
-        raise OptionError(
-            f"{option} {name}: the folder {path.parent} does not exist, make it first"
-        )
+    require_folder(option, name)
     if path.is_dir():
         raise OptionError(f"{option} {name} is a folder: give the name of a file")
     place = _place(path)
@@ -131,6 +129,19 @@ def check_optional(
 ) -> OutputFile | None:
     """The file of `check_output`, or None where none was asked for."""
     return None if name is None else check_output(option, name, endings, keep=keep)
+
+
+def require_folder(option: str, name: str) -> None:
+    """Make sure that the folder of a file is there.
+
+    Raises
+    ------
+    OptionError
+        If it is not.
+    """
+    folder = Path(name).parent
+    if not folder.is_dir():
+        raise OptionError(f"{option} {name}: the folder {folder} does not exist, make it first")
 
 
 def require_own_file(option: str, name: str, *, keep: Iterable[str | None] = ()) -> None:

@@ -264,14 +264,19 @@ def apply(
 
 def _regions(image: str, roi: str | None, nodata: float | None) -> Mapping[str, Region]:
     """The regions of ``--roi`` by their names, each in the image."""
-    from acutance.raster import open_image, parse_rois
+    from acutance.raster import Region, open_image
+    from acutance.raster.roi import parse_features
 
     if roi is None:
         return {}
     before = open_image(image, nodata=nodata)
-    regions = parse_rois(roi, before)
-    for region in regions.values():
-        region.box(before.shape)
+    regions: dict[str, Region] = {}
+    for name, one in parse_features(roi, before).items():
+        if isinstance(one, Region):
+            one.box(before.shape)
+            regions[name] = one
+        else:
+            say(f"acutance: region {name}: {one}")
     return regions
 
 

@@ -14,7 +14,7 @@ import typer
 from acutance.cli.choices import parse_grid
 from acutance.cli.option_groups import with_groups
 from acutance.cli.options import ImageArgument, PixelOptions, ResultOptions, SoftnessOptions
-from acutance.cli.output import OutputFile, check_optional, require_own_file
+from acutance.cli.output import OutputFile, check_optional, require_folder, require_own_file
 from acutance.cli.progress import progress_bar
 from acutance.cli.results import Outputs, Shown
 from acutance.cli.study import WorkersOption, dask_option
@@ -120,6 +120,7 @@ def scan(
     if dask is not None and workers is not None:
         raise OptionError("--workers and --dask cannot be combined: the cluster has its own")
     if keep is not None:
+        require_folder("--keep", keep)
         require_own_file("--keep", keep, keep=kept)
     places = parse_grid("--field", field)
     images, regions = pixels.open(image)

@@ -57,6 +57,11 @@ class Estimate:
     highest : float, optional
         What it cannot exceed, 1 for a share: intervals end there, too.
 
+    Raises
+    ------
+    OptionError
+        If value or deviation is no number, or the deviation is negative.
+
     Examples
     --------
     >>> mtf_nyquist = Estimate(0.1511, 0.0032)
@@ -73,6 +78,18 @@ class Estimate:
     std: float = 0.0
     lowest: float | None = None
     highest: float | None = None
+
+    def __post_init__(self) -> None:
+        # Thousands are made a second: one difference tells texts, None and negative deviations.
+        try:
+            wrong = self.value - self.std > self.value
+        except TypeError:
+            wrong = True
+        if wrong:
+            raise OptionError(
+                f"an estimate of {self.value!r:.80} with a standard deviation of {self.std!r:.80}: "
+                "give two numbers, the deviation not below 0; nan where one does not exist"
+            )
 
     # numpy then leaves sums and products with its own scalars to the methods below.
     __array_ufunc__: ClassVar[None] = None

@@ -74,8 +74,8 @@ def crs_without_declaration(parts: Sequence[Floats], image: Image, name: str) ->
     Raises
     ------
     RegionError
-        If longitude and latitude are not what the file holds; the message names the reading that
-        lies in the image and how to declare it.
+        If longitude and latitude are not what the file holds, or they are exchanged; the message
+        names the reading that lies in the image and how to declare it.
     """
     if image.geolocation is None:
         return PIXELS
@@ -89,6 +89,12 @@ def crs_without_declaration(parts: Sequence[Floats], image: Image, name: str) ->
         if possible
         else "is no longitude and latitude"
     )
+    swapped = [part[:, ::-1] for part in parts]
+    if all(map(_are_degrees, swapped)) and _in_image(swapped, LONLAT_CRS, image):
+        raise RegionError(
+            f"{found} {as_degrees} but inside when latitude is read first: longitude comes first, "
+            f"write [{y:.9g}, {x:.9g}]"
+        )
     if _in_image(parts, PIXELS, image):
         raise RegionError(
             f"{found} {as_degrees} but inside when read as pixels (column, row): add "

@@ -18,6 +18,9 @@ from acutance.errors import RegionError
 __all__ = ["declared_crs", "load_geojson", "points", "polygons"]
 
 
+_NOTHING = "no geometry: draw the target as a Polygon"
+
+
 def load_geojson(name: str) -> dict[str, Any]:
     """The object in a GeoJSON file.
 
@@ -69,8 +72,8 @@ def declared_crs(document: dict[str, Any], name: str) -> str | None:
     return crs
 
 
-def polygons(document: dict[str, Any], name: str) -> dict[str, list[Floats]]:
-    """The polygons of a file in its order, each by its name.
+def polygons(document: dict[str, Any], name: str) -> dict[str, list[Floats] | str]:
+    """The polygons of a file in its order, each by its name, and what is none.
 
     Parameters
     ----------
@@ -82,22 +85,31 @@ def polygons(document: dict[str, Any], name: str) -> dict[str, list[Floats]]:
     Returns
     -------
     dict
-        The rings of each polygon, outline first, as (n, 2) arrays of (x, y). The name is that of
-        the feature (``properties.name``, else ``id``), else its number in the file; a name that
-        stands there twice gets a number.
+        The rings of each polygon, outline first, as (n, 2) arrays of (x, y); of other geometry, or
+        none, the reason why it is no region. The name is that of the feature
+        (``properties.name``, else ``id``), else its number in the file; a name that stands there
+        twice gets a number.
 
     Raises
     ------
     RegionError
-        If there is no polygon, or something that is none.
+        If there is no polygon, or what is no GeoJSON.
     """
-    found: dict[str, list[Floats]] = {}
+    found: dict[str, list[Floats] | str] = {}
     for label, rings in _polygons(document, name):
-        if not isinstance(rings, list) or not rings:
+        if not isinstance(rings, str) and not (isinstance(rings, list) and rings):
             raise RegionError(f"{name} holds a polygon without coordinates: draw the target again")
-        found[_unused(label, found)] = [_ring(ring, name) for ring in rings]
-    if not found:
-        raise RegionError(f"{name} holds no polygon: draw the target as one Polygon")
+        found[_unused(label, found)] = (
+            rings if isinstance(rings, str) else [_ring(ring, name) for ring in rings]
+        )
+    others = [one for one in found.values() if isinstance(one, str)]
+    if len(others) == len(found):
+        drawn = next((one for one in others if one != _NOTHING), None)
+        raise RegionError(
+            f"{name} holds no polygon: draw the target as one Polygon"
+            if drawn is None
+            else f"{name} holds {drawn}"
+        )
     return found
 
 
@@ -127,8 +139,12 @@ def _unused(label: str, used: dict[str, Any]) -> str:
 
 
 def _polygons(node: Any, name: str, label: str = "") -> Iterator[tuple[str, Any]]:
-    """Every polygon below a GeoJSON object: what to call it, and its coordinates."""
+    """Every geometry below a GeoJSON object: what to call it, and its coordinates.
+
+    Of one that is no polygon the reason instead.
+    """
     if node is None:
+        yield label or "geometry", _NOTHING
         return
     if not isinstance(node, dict):
         raise RegionError(f"{name} holds {node!r:.40} where GeoJSON has an object: export it again")
@@ -152,8 +168,9 @@ def _polygons(node: Any, name: str, label: str = "") -> Iterator[tuple[str, Any]
             "FeatureCollection"
         )
     else:
-        raise RegionError(
-            f"{name} holds a {kind!r}, which has no inside: draw the target as a Polygon"
+        yield (
+            label or str(kind),
+            f"a {kind!r}, which has no inside: draw the target as a Polygon",
         )
 
 

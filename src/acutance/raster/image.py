@@ -279,6 +279,12 @@ def _as_array(array: Any) -> NDArray[Any]:
             f"the axes of the {type(array).__name__} are {axes[0]} and {axes[1]}, and an image has "
             "rows first: give its transpose, or across and along are exchanged"
         )
+    if isinstance(array, list | tuple) and array and all(map(_is_image, array)):
+        raise ImageError(
+            f"the {type(array).__name__} holds {len(array)} image{'s' * (len(array) > 1)}, and "
+            "one is measured at a time: give one of them; a list to measure_edges is one of pairs "
+            "(image, region)"
+        )
     try:
         found: NDArray[Any] = np.asanyarray(array)
     except (TypeError, ValueError) as error:
@@ -292,3 +298,8 @@ def _as_array(array: Any) -> NDArray[Any]:
             "opened by its name, acutance.open_image(name)"
         )
     return found
+
+
+def _is_image(one: Any) -> bool:
+    """Whether a part of what was given is an image itself."""
+    return isinstance(one, Image) or (isinstance(one, np.ndarray) and one.ndim > 1)

@@ -14,7 +14,7 @@ from acutance.raster.geolocation import LONLAT_CRS
 from acutance.raster.image import Image
 from acutance.raster.region import Box, Region
 
-__all__ = ["parse_roi", "parse_rois"]
+__all__ = ["parse_features", "parse_roi", "parse_rois"]
 
 _RECTANGLE = re.compile(r"^\s*-?\d+\s*(,\s*-?\d+\s*){3}$")
 _NUMBERS = re.compile(r"^[\d\s.,+-]+$")
@@ -81,15 +81,28 @@ def parse_rois(text: str, image: Image) -> dict[str, Region]:
     -------
     dict of str to Region
         In the order of the file, by the name of each feature (``properties.name``, else ``id``,
-        else "feature 2"); other texts name their only region themselves. A polygon, and a box in
-        degrees, may reach beyond the image: the pixels inside are read. Some of several may lie
-        outside it: to read those is refused.
+        else "feature 2"); other texts name their only region themselves. Features that hold
+        something else are passed over. A polygon, and a box in degrees, may reach beyond the
+        image: the pixels inside are read. Some of several may lie outside it: to read those is
+        refused.
 
     Raises
     ------
     RegionError
         If the text is none of these, the file has no polygon, its coordinates cannot be related
         to the image, or no region holds any of the image's pixels.
+    """
+    found = parse_features(text, image)
+    return {name: one for name, one in found.items() if isinstance(one, Region)}
+
+
+def parse_features(text: str, image: Image) -> dict[str, Region | str]:
+    """The regions of `parse_rois`, and of features without a polygon why they are none.
+
+    Raises
+    ------
+    RegionError
+        As by `parse_rois`.
     """
     if _RECTANGLE.match(text):
         box = Box(*(int(number) for number in text.split(",")))
@@ -123,28 +136,32 @@ def _lonlat_region(text: str, image: Image) -> Region:
     return Region(to_pixels(corners, LONLAT_CRS, image))
 
 
-def _geojson_regions(name: str, image: Image) -> dict[str, Region]:
+def _geojson_regions(name: str, image: Image) -> dict[str, Region | str]:
     document = load_geojson(name)
     found = polygons(document, name)
+    drawn = [rings for rings in found.values() if not isinstance(rings, str)]
     crs = declared_crs(document, name)
     if crs is None:
-        meant = crs_without_declaration([rings[0] for rings in found.values()], image, name)
+        meant = crs_without_declaration([rings[0] for rings in drawn], image, name)
     else:
         meant = crs
-    regions: dict[str, Region] = {}
+    regions: dict[str, Region | str] = {}
     outside: dict[str, RegionError] = {}
     reading = _UNDECLARED_PIXELS.format(name) if crs is None and meant == PIXELS else ""
     for label, rings in found.items():
-        of_which = f"{label}: " if len(found) > 1 else ""
+        if isinstance(rings, str):
+            regions[label] = f"it has {rings}"
+            continue
+        of_which = f"{label}: " if len(drawn) > 1 else ""
         try:
             outline, *holes = (to_pixels(ring, meant, image) for ring in rings)
-            regions[label] = Region(outline, tuple(holes))
+            region = regions[label] = Region(outline, tuple(holes))
         except RegionError as error:
             raise RegionError(f"{of_which}{error}{reading}") from None
         try:
-            regions[label].box(image.shape)
+            region.box(image.shape)
         except RegionError as error:
             outside[label] = RegionError(f"{of_which}{error}{reading}")
-    if len(outside) == len(regions):
+    if len(outside) == len(drawn):
         raise next(iter(outside.values()))
     return regions

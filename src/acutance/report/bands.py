@@ -88,7 +88,6 @@ def bands_text(found: BandScenes, *, required: Required = ()) -> str:
         Requirements that every band answers.
     """
     first = found.scenes[found.first]
-    bands = f"{len(found.scenes)} band{'s' if len(found.scenes) > 1 else ''}"
     lines = [
         f"band {name}: {scene.verdict.word}: {scene.verdict.sentence}"
         for name, scene in found.scenes.items()
@@ -97,11 +96,18 @@ def bands_text(found: BandScenes, *, required: Required = ()) -> str:
     lines += [f"band {one.values['band']}: no shift: {one.reason}" for one in found.unshifted]
     image = describe_image(first, without=("band",))
     return "\n\n".join((
-        f"scene in {bands}\n  {image}",
+        f"scene in {_counted(found)}\n  {image}",
         *map(table_text, bands_tables(found)),
         "\n".join(lines),
         *_required_of_bands(found, required),
     ))  # fmt: skip
+
+
+def _counted(found: BandScenes) -> str:
+    """How many bands were measured, and of how many."""
+    measured, asked = len(found.scenes), len(found.scenes) + len(found.rejected)
+    of = f" of {asked}" if asked > measured else ""
+    return f"{measured}{of} band{'s' if asked > 1 else ''}"
 
 
 def _required_of_bands(found: BandScenes, required: Required) -> list[str]:
@@ -199,4 +205,4 @@ def bands_page(
     )
     facts = provenance(found.scenes[found.first])
     facts.pop("band", None)
-    return render_page(f"Scene in {len(names)} bands", ", ".join(names), content, facts)
+    return render_page(f"Scene in {_counted(found)}", ", ".join(names), content, facts)

@@ -34,13 +34,13 @@ independent. Methods that fit a shape miss one that overshoots."""
 
 @dataclass(frozen=True, eq=False)
 class VerifiedEdge(ShortRepr):
-    """An edge, or the mean of a scene's edges in one direction, before and after a filter.
+    """An edge, or the mean of a scene's edges across or along track, before and after a filter.
 
     Parameters
     ----------
     name : str
-    normal_deg : float
-        Direction of the normal.
+    normal_deg : float or None
+        Direction of the normal; ``None`` of a mean of edges of several directions.
     before, after : Estimate
         MTF at Nyquist as measured.
     predicted : Estimate
@@ -60,7 +60,7 @@ class VerifiedEdge(ShortRepr):
     """
 
     name: str
-    normal_deg: float
+    normal_deg: float | None
     before: Estimate
     after: Estimate
     predicted: Estimate

@@ -125,7 +125,9 @@ def _of_scene(
     for pair in found:
         groups[pair[0].orientation].append(pair)
     return [
-        _mean_edge(f"{name}, {len(own)} edges", own, filter) for name, own in groups.items() if own
+        _mean_edge(f"{name}, {len(own)} edge{'s' * (len(own) > 1)}", own, filter)
+        for name, own in groups.items()
+        if own
     ]
 
 
@@ -159,14 +161,14 @@ def _tried(before: Image, after: Image, region: Region, method: str) -> _Pair | 
 
 
 def _mean_edge(name: str, pairs: Sequence[_Pair], filter: RestorationFilter) -> VerifiedEdge:
-    """Weighted mean of edges of one direction; the weights are those after the filter."""
+    """Weighted mean of edges across or along; the weights are those after the filter."""
     before, after = zip(*pairs, strict=True)
     weight = np.array([one.mtf_nyquist.std**-2 for one in after])
     weight /= weight.sum()
     gain = np.array([_gain(filter, one.line.normal_deg) for one in before])
     return VerifiedEdge(
         name,
-        float(np.median([one.line.normal_deg for one in before])),
+        before[0].line.normal_deg if len(pairs) == 1 else None,
         _mean(before, "mtf_nyquist", weight),
         _mean(after, "mtf_nyquist", weight),
         _mean(before, "mtf_nyquist", weight, gain),

@@ -25,7 +25,10 @@ from acutance.scan.segments import find_segments
 from acutance.scan.windows import Window
 from acutance.targets.straight.find_edges import Segment
 
-__all__ = ["BandPiece", "Unseen", "band_pieces", "in_band"]
+__all__ = ["UNSEEN", "BandPiece", "Unseen", "band_pieces", "in_band"]
+
+UNSEEN = "its two sides differ too little in this band"
+"""What the reason of an edge that a band does not show begins with."""
 
 _NEAR_PX = 3.0
 """Lines of two bands that lie closer, of like direction, are one edge: registered bands are
@@ -145,7 +148,7 @@ def in_band(
         else:
             yield Unseen(
                 segment,
-                "its two sides differ too little in this band: the gradient is "
+                f"{UNSEEN}: the gradient is "
                 f"{abs(rise) / max(slope.noise, 1e-300):.1f} deviations of its noise, at least "
                 f"{options.min_gradient_sigmas:g} are needed",
             )

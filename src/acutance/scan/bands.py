@@ -27,6 +27,9 @@ from acutance.targets.target_result import Rejected
 
 __all__ = ["BandEdges", "BandScenes", "scan_bands"]
 
+_MIN_RATIO = 8
+"""Of both other sides to the last, from which this is an axis of bands: no scene is so narrow."""
+
 
 @dataclass(frozen=True, eq=False)
 class BandEdges(EdgeTable):
@@ -206,6 +209,7 @@ def _bands(image: Any, bands: Sequence[int] | None) -> dict[str, Image]:
             "the image is one band: give the path of the file, or a sequence of its bands"
         )
     else:
+        _require_bands(image)
         numbered = _numbered([Image.of(one) for one in image])
         wanted = list(numbered) if bands is None else [str(one) for one in bands]
         missing = [one for one in wanted if one not in numbered]
@@ -223,6 +227,28 @@ def _bands(image: Any, bands: Sequence[int] | None) -> dict[str, Image]:
             + "): scan those of one grid together"
         )
     return found
+
+
+def _require_bands(image: Any) -> None:
+    """Refuse an array whose first axis is not that of the bands: its rows would be taken for them.
+
+    Raises
+    ------
+    ImageError
+        If it is one band, or the bands come last.
+    """
+    shape = tuple(getattr(image, "shape", ()))
+    if len(shape) == 2:
+        raise ImageError(
+            f"the array has shape {shape}, that of one band: measure it with scan_scene, or give "
+            "several bands, (bands, rows, columns)"
+        )
+    if len(shape) == 3 and _MIN_RATIO * shape[2] <= min(shape[:2]):
+        raise ImageError(
+            f"the array has shape {shape}, and bands come first, (bands, rows, columns): here they "
+            "seem to come last, give numpy.moveaxis(array, -1, 0), or array[..., band] for one to "
+            "scan_scene; if they do come first, give list(array)"
+        )
 
 
 def _numbered(images: Sequence[Image]) -> dict[str, Image]:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
+from acutance.errors import OptionError
 from acutance.scan.parquet import write_parquet
 
 __all__ = ["EdgeTable", "ToLonLat"]
@@ -32,8 +33,13 @@ class EdgeTable:
         """All arrays by name."""
         raise NotImplementedError
 
+    def __len__(self) -> int:
+        """Rows of the table."""
+        return int(self.columns()["row"].size)
+
     def placed_columns(self, lonlat: ToLonLat | None = None) -> dict[str, NDArray[Any]]:
         """All arrays by name, with longitude and latitude in degrees where they are known."""
+        _require_function(lonlat)
         columns = self.columns()
         if lonlat is None:
             return columns
@@ -41,12 +47,17 @@ class EdgeTable:
         return columns | {"lon_deg": np.asarray(lon_deg), "lat_deg": np.asarray(lat_deg)}
 
     def to_csv(self, lonlat: ToLonLat | None = None) -> str:
-        """A table with one line an edge; NaN are empty.
+        """The text of a table with one line an edge; NaN are empty.
 
         Parameters
         ----------
         lonlat : function of (row, col) arrays, optional
             Gives longitudes and latitudes, two more columns.
+
+        Raises
+        ------
+        OptionError
+            If that is no function, such as the path of a file: the text is returned.
         """
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
@@ -56,6 +67,28 @@ class EdgeTable:
                  for name, column in columns.items())  # fmt: skip
         writer.writerows(zip(*cells, strict=True))
         return text.getvalue()
+
+    def to_pandas(self, lonlat: ToLonLat | None = None) -> Any:
+        """The table as a `pandas.DataFrame` with one row an edge.
+
+        Parameters
+        ----------
+        lonlat : function of (row, col) arrays, optional
+            Gives longitudes and latitudes, two more columns.
+
+        Raises
+        ------
+        OptionError
+            If pandas is not installed.
+        """
+        try:
+            import pandas
+        except ImportError as error:
+            raise OptionError(
+                "to_pandas needs pandas, which is not installed: pip install 'acutance[pandas]', "
+                "or take the arrays of columns()"
+            ) from error
+        return pandas.DataFrame(self.placed_columns(lonlat))
 
     def to_parquet(
         self, file: str | os.PathLike[str] | BinaryIO, lonlat: ToLonLat | None = None
@@ -83,6 +116,7 @@ class EdgeTable:
         lonlat : function of (row, col) arrays, optional
             Gives longitudes and latitudes. Without it coordinates are columns and rows of pixels.
         """
+        _require_function(lonlat)
         columns = self.columns()
         angle = np.radians(columns["normal_deg"])
         half = 0.5 * columns["length_px"]
@@ -102,6 +136,23 @@ class EdgeTable:
             for i, line in enumerate(lines)
         ]
         return {"type": "FeatureCollection", "features": features}
+
+
+def _require_function(lonlat: Any) -> None:
+    """Refuse what is no function of places, most of all the name of a file.
+
+    Raises
+    ------
+    OptionError
+        If it is none.
+    """
+    if lonlat is None or callable(lonlat):
+        return
+    raise OptionError(
+        f"lonlat is {lonlat!r:.80}: give a function of (row, col), such as "
+        "image.geolocation.to_lonlat. Texts are returned, and written by "
+        'pathlib.Path("edges.csv").write_text(edges.to_csv())'
+    )
 
 
 def _value(one: Any) -> Any:

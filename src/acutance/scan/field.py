@@ -12,6 +12,7 @@ edges, each weighted by what it tells of mode m, so that errors of H and of a ar
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
@@ -114,8 +115,8 @@ class Field(ShortRepr):
     root : (20, r) array
         Factor of its covariance.
     chance_constant : float
-        Probability that sharpness is the same everywhere, 0 to 1; of too few edges (see
-        `is_fitted`) what it was before any was seen.
+        Probability that sharpness is the same everywhere, 0 to 1; ``nan`` of too few edges (see
+        `is_fitted`), which tell nothing of it.
     """
 
     roi: tuple[int, int, int, int]
@@ -123,6 +124,11 @@ class Field(ShortRepr):
     amount: Floats
     root: Floats
     chance_constant: float
+
+    def __post_init__(self) -> None:
+        # What the fit has then is what was taken for likely before any edge was seen.
+        if not self.is_fitted:
+            object.__setattr__(self, "chance_constant", math.nan)
 
     @property
     def is_fitted(self) -> bool:

@@ -148,6 +148,11 @@ class KeptWindows:
             return f"{self.path} is in use by another scan: wait for it, or name another file"
         if "not a database" in str(error):
             return f"{self.path} is no file of kept windows: name another file"
+        if not self.path.parent.is_dir():
+            return (
+                f"finished windows cannot be kept in {self.path}: the folder {self.path.parent} "
+                "does not exist, make it first"
+            )
         return f"finished windows cannot be kept in {self.path} ({error}): name another file"
 
 

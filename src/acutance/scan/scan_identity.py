@@ -28,6 +28,12 @@ _WORDS = {
     "region": "region",
     "gsd": "GSD",
 }
+_IMAGE_WORDS = {
+    "path": "name of the image",
+    "band": "band",
+    "nodata": "nodata value (nodata, --nodata)",
+    "curve": "characteristic curve (linearize, --gamma, --linearize)",
+}
 
 
 def scan_identity(
@@ -72,8 +78,32 @@ def difference(one: Mapping[str, Any], other: Mapping[str, Any]) -> str | None:
     for name in dict.fromkeys((*one, *other)):
         # As text: NaN, a nodata value, equals itself there.
         if json.dumps(one.get(name)) != json.dumps(other.get(name)):
-            return _WORDS.get(name, name)
+            words = _WORDS.get(name, name)
+            if name == "images":
+                return _difference_of_images(one.get(name), other.get(name)) or words
+            return words
     return None
+
+
+def _difference_of_images(some: Any, others: Any) -> str | None:
+    """What the images of two scans differ in, where that is one thing with a name."""
+    if not (isinstance(some, list) and isinstance(others, list)):
+        return None
+    if len(some) != len(others):
+        return "number of bands"
+    found = {
+        name
+        for one, other in zip(map(_reading, some), map(_reading, others), strict=True)
+        for name in (*one, *other)
+        if json.dumps(one.get(name)) != json.dumps(other.get(name))
+    }
+    return next((words for name, words in _IMAGE_WORDS.items() if name in found), None)
+
+
+def _reading(image: Mapping[str, Any]) -> dict[str, Any]:
+    """How an image is read, that behind a characteristic curve beside the curve."""
+    own = dict(image)
+    return own.pop("source", {}) | own
 
 
 def _image(image: Image) -> Any:

@@ -15,6 +15,7 @@ from acutance.geometry.angles import axis_difference
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Box, Gsd, Image, open_image
 from acutance.scan.all_windows import Progress, part_of, scan_windows
+from acutance.scan.band_pieces import UNSEEN
 from acutance.scan.checks import check_scene
 from acutance.scan.edge_likelihoods import EdgeLikelihoods
 from acutance.scan.field import Field, field_places
@@ -185,9 +186,17 @@ def _fit(used: Sequence[UsedEdge], edges: SceneEdges, image: Image, box: Box) ->
             "or hold nothing straight; scan a larger part, or another image",
             edges,
         )
-    if len(used) < _MIN_EDGES:
+    unseen = np.char.startswith(edges.reason, UNSEEN)
+    if unseen.all():
         raise FewEdgesError(
-            f"{_counted(edges.size)} found, and {len(used)} of them can be used, where "
+            f"the band shows none of the {edges.size} straight edges of the other bands, and at "
+            f"least {_MIN_EDGES} are needed: it is flat, or its noise is stronger; leave it out",
+            edges,
+        )
+    if len(used) < _MIN_EDGES:
+        unshown = f", {unseen.sum()} of which this band does not show" if unseen.any() else ""
+        raise FewEdgesError(
+            f"{_counted(edges.size)} found{unshown}, and {len(used)} of them can be used, where "
             f"at least {_MIN_EDGES} are needed: {_common_reason(edges)}{_processing(image, box)}"
             "scan a larger part, or another image, or measure single edges",
             edges,
@@ -210,9 +219,9 @@ def _fit(used: Sequence[UsedEdge], edges: SceneEdges, image: Image, box: Box) ->
 
 def _common_reason(edges: SceneEdges) -> str:
     """The most frequent word of why edges are left out."""
-    if edges.used.all():
+    unused = edges.verdict[~edges.used & ~np.char.startswith(edges.reason, UNSEEN)]
+    if not unused.size:
         return ""
-    unused = edges.verdict[~edges.used]
     words, counts = np.unique(unused, return_counts=True)
     return f"most of the others are {words[int(np.argmax(counts))]}; "
 

@@ -6,12 +6,15 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from numbers import Real
 from typing import Any
+
+import numpy as np
 
 from acutance.curves import Estimate, Mtf, Otf2d, Response
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
-from acutance.errors import RegionError
+from acutance.errors import OptionError, RegionError
 from acutance.geometry.line import Orientation
 from acutance.scan.field import Field, FieldOtf
 from acutance.scan.scene_edges import SceneEdges
@@ -124,8 +127,11 @@ class SceneMeasurement(Measurement):
         Raises
         ------
         RegionError
-            If the place lies outside of what was scanned.
+            If the place lies outside of what was scanned, or is none.
         """
+        for name, value in (("row", row), ("col", col)):
+            if isinstance(value, bool) or not isinstance(value, Real | np.number):
+                raise RegionError(f"{name} is {value!r:.80}: give a number of pixels")
         if not self.field.holds(row, col):
             top, left, height, width = self.field.roi
             raise RegionError(
@@ -136,7 +142,16 @@ class SceneMeasurement(Measurement):
         return ScenePlace(row, col, Otf2d(model, self.otf.gsd_m), self.axes_deg)
 
     def over_field(self, rows: int = 3, cols: int = 3) -> tuple[ScenePlace, ...]:
-        """The sensor in the middle of so many equal parts of the scene, row by row."""
+        """The sensor in the middle of so many equal parts of the scene, row by row.
+
+        Raises
+        ------
+        OptionError
+            If a number of parts is not a whole one from 1.
+        """
+        for name, value in (("rows", rows), ("cols", cols)):
+            if not isinstance(value, int | np.integer) or value < 1:
+                raise OptionError(f"{name} is {value!r:.80}: give a whole number of parts, from 1")
         row, col = self.field.grid(rows, cols)
         return tuple(self.at(float(i), float(j)) for i in row for j in col)
 

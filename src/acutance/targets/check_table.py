@@ -115,8 +115,11 @@ _STRAIGHT = {
         "enhancement",
     ),
     "gradient": Question(
-        "How steep is the background far from the target, in units of aperture wings?", "<=", 1.0,
-        "a slope cannot be told from a wide halo; choose a region with flat sides", severity="note",
+        "How steep is the background far from the target, against light that an aperture scatters?",
+        "<=", 1.0,
+        "the ground is not level there, or the sensor has a wide halo, which lowers the MTF; both "
+        "look alike here, and the intervals allow for either; choose a region with level sides",
+        severity="note",
     ),
     "structure": Question(
         "How much does the profile go up and down next to the edge?", "<=", 0.02,

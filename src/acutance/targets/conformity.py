@@ -122,6 +122,11 @@ class ToleranceLimit:
         OptionError
             If it states none.
         """
+        if not isinstance(text, str):
+            raise OptionError(
+                f"the requirement is {text!r:.80}, no text: write 'mtf_nyquist >= 0.09', or give a "
+                "ToleranceLimit"
+            )
         found = _FORM.fullmatch("".join(text.split()))
         try:
             orientation, metric, sense, number = found.groups()  # type: ignore[union-attr]
@@ -216,7 +221,7 @@ def conformity_of(
     OptionError
         If a text states no limit.
     """
-    stated = [ToleranceLimit.of(one) if isinstance(one, str) else one for one in limits]
+    stated = [one if isinstance(one, ToleranceLimit) else ToleranceLimit.of(one) for one in limits]
     if isinstance(result, TargetResult):
         numbers, doubts = _of_target(result)
         parts: Parts = {name: group.measurements for name, group in result.groups.items()}

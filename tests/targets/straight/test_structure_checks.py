@@ -81,7 +81,12 @@ def test_a_weak_slope_across_the_edge_is_seen(slope, size):
     for seed in range(3):
         image, truth = an_edge(seed, size=size)
         s = truth.line.normal_distance(*np.indices(image.shape))
-        assert "gradient" in failed(ac.measure_edge(image + 1000 * slope * s / 50))
+        m = ac.measure_edge(image + 1000 * slope * s / 50)
+        assert "gradient" in failed(m)
+        words = next(one.message for one in m.checks if one.name == "gradient")
+        assert "both look alike here, and the intervals allow for either" in words
+        # Dark is on the low side: a fall towards it goes the way that scattered light does.
+        assert ("slopes against light" in words) == (slope < 0)
 
 
 def test_ringing_of_a_product_is_the_sensor_s_and_not_the_ground_s():

@@ -160,8 +160,9 @@ def proof_table(proof: RestorationProof) -> Table:
     """
     rows = tuple(
         (
-            one.name, f"{one.normal_deg:.1f}", word_estimate(one.before).value_and_std,
-            word_estimate(one.predicted).value_and_std, word_estimate(one.after).value_and_std,
+            one.name, "" if one.normal_deg is None else f"{one.normal_deg:.1f}",
+            word_estimate(one.before).value_and_std, word_estimate(one.predicted).value_and_std,
+            word_estimate(one.after).value_and_std,
             word_estimate(one.difference).value_and_std, write_fixed(one.deviations, 1),
             word_estimate(one.overshoot).value_and_std,
             write_fixed(one.noise_gain, 2) if np.isfinite(one.noise_gain) else MISSING,

@@ -146,7 +146,7 @@ def measure_biresolution(
 
 
 def _require_method(method: str) -> None:
-    if method not in BIRESOLUTION_METHODS:
+    if not isinstance(method, str) or method not in BIRESOLUTION_METHODS:
         known = ", ".join(BIRESOLUTION_METHODS)
         raise OptionError(f"there is no bi-resolution method {method!r}: choose one of {known}")
 

@@ -237,7 +237,7 @@ def _with_survey(
 
 
 def _require_method(method: str) -> None:
-    if method not in POINTS_METHODS:
+    if not isinstance(method, str) or method not in POINTS_METHODS:
         known = ", ".join(POINTS_METHODS)
         raise OptionError(f"there is no points method {method!r}: choose one of {known}")
 

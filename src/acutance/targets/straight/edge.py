@@ -230,7 +230,7 @@ def require_method(name: str) -> Callable[[EdgePixels, EdgeOptions], Steps[EdgeF
     OptionError
         If there is none.
     """
-    if name not in METHODS:
+    if not isinstance(name, str) or name not in METHODS:
         raise OptionError(f"there is no edge method {name!r}: choose one of {', '.join(METHODS)}")
     return METHODS[name]
 

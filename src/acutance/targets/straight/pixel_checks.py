@@ -163,15 +163,28 @@ def gradient(data: CheckData, limits: Limits) -> Check:
     """
     near = max(data.far_px, 3 * data.fwhm_px)
     slope, std, tail = _slope_outwards(data, near)
-    value = 1 - slope / tail if slope < -GRADIENT_SIGMAS * std else 0.0
+    against = -slope / tail if slope < -GRADIENT_SIGMAS * std else 0.0
     slope, std, tail = _slope_outwards(data, 0.5 * (near + float(data.outside.max())))
-    if slope - tail > GRADIENT_SIGMAS * std:
-        value = max(value, slope / tail)
-    found = (
-        f"far from the target the background slopes by {value:.1f} times a small aperture's "
-        "wings, which fall outwards (0 to 1)"
-    )
-    return answer("gradient", value, found, limits)
+    along = slope / tail if slope - tail > GRADIENT_SIGMAS * std else 0.0
+    value = max(1 + against, along) if against else along
+    return answer("gradient", value, _gradient_words(against, along), limits)
+
+
+def _gradient_words(against: float, along: float) -> str:
+    """How the background slopes, in units of the steepest fall of scattered light; 0: it does not.
+
+    Light that an aperture scatters past the edge gets less outwards: that is one way for a slope.
+    """
+    if not (against or along):
+        return "far from the target the background slopes no more than scattered light explains"
+    if along > 1 + against or not against:
+        how = f"{along:.1f} times as steeply as light that an aperture scatters at most does"
+    else:
+        how = (
+            f"against light that an aperture scatters, {against:.1f} times as steeply as that does "
+            "at most"
+        )
+    return f"far from the target the background slopes {how}"
 
 
 def _slope_outwards(data: CheckData, from_px: float) -> tuple[float, float, float]:

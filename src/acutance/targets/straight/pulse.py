@@ -222,7 +222,7 @@ def require_pulse_method(
     OptionError
         If there is none.
     """
-    if name not in PULSE_METHODS:
+    if not isinstance(name, str) or name not in PULSE_METHODS:
         known = ", ".join(PULSE_METHODS)
         raise OptionError(f"there is no pulse method {name!r}: choose one of {known}")
     return PULSE_METHODS[name]
