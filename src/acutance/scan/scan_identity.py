@@ -102,8 +102,7 @@ def _difference_of_images(some: Any, others: Any) -> str | None:
 
 def _reading(image: Mapping[str, Any]) -> dict[str, Any]:
     """How an image is read, that behind a characteristic curve beside the curve."""
-    own = dict(image)
-    return own.pop("source", {}) | own
+    return {**image.get("source", {}), **image}
 
 
 def _image(image: Image) -> Any:
