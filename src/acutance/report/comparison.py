@@ -11,7 +11,7 @@ import numpy as np
 from acutance.curves import Estimate, Response
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
-from acutance.targets import Measurement, Rejected, TargetResult
+from acutance.targets import Measurement, Record, Rejected, TargetResult
 from acutance.targets.straight.pulse_response import prf_fwhm
 
 __all__ = ["Comparison", "Result", "as_result", "compare"]
@@ -127,6 +127,11 @@ def as_result(result: Result) -> Measurement | TargetResult[Measurement] | Compa
     """
     if isinstance(result, Measurement | TargetResult):
         return result
+    if isinstance(result, Record):
+        raise OptionError(
+            "a record has no pixels: give the measurement itself here; text, tables and page take "
+            "records"
+        )
     if not isinstance(result, Comparison):
         if not isinstance(result, Sequence) or isinstance(result, str):
             raise OptionError(

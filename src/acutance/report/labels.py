@@ -124,7 +124,7 @@ def metric_words(name: str) -> MetricWords:
     return METRIC_WORDS.get(name, MetricWords(name.replace("_", " "), "", ""))
 
 
-def measurement_metric_words(measurement: Measurement, name: str) -> MetricWords:
+def measurement_metric_words(measurement: Measurement | Record, name: str) -> MetricWords:
     """The words of a metric of this measurement, which state where it is one of a ratio."""
     words = metric_words(name)
     if not measurement.is_ratio:
@@ -138,7 +138,7 @@ def measurement_metric_words(measurement: Measurement, name: str) -> MetricWords
     return replace(words, label=f"{words.label} of the ratio")
 
 
-def transfer_name(measurement: Measurement, own: str = "MTF") -> str:
+def transfer_name(measurement: Measurement | Record, own: str = "MTF") -> str:
     """The name of the transfer curve: `own`, or that of the ratio.
 
     Without a reference a pair of images gives MTF_low / MTF_high only. It looks like an MTF and

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 from acutance.report.bands import bands_tables
 from acutance.report.figure import panels
-from acutance.report.figures.curves import COLORS, band_edges, mark_frequencies
 from acutance.report.html import Plate, Section, render_fragment
 from acutance.report.labels import describe_image, title_of
 from acutance.report.page import verdict_of
 from acutance.report.paper import new_page, split_page, styled
+from acutance.report.recorded import recorded_mtf
 from acutance.report.tables.measurement import headline_table, numbers_of, recorded_numbers
 from acutance.report.tables.target import target_tables
 from acutance.targets.measurement import Measurement
@@ -59,7 +59,7 @@ def _several_html(summary: str, tables: Sequence[Table]) -> str:
 def _one_html(result: Measurement | Record) -> str:
     if isinstance(result, Record):
         numbers = headline_table(recorded_numbers(result))
-        plate = _recorded_mtf(result)
+        plate = recorded_mtf(result)
     else:
         numbers = headline_table(numbers_of(result), result)
         plate = _first_panels(result)
@@ -80,19 +80,3 @@ def _first_panels(measurement: Measurement) -> Plate:
         for place, panel in zip(split_page(figure, 1, len(shown)), shown, strict=True):
             panel.draw(place)
     return Plate.of_figure(figure, "Curves", "")
-
-
-def _recorded_mtf(record: Record) -> Plate:
-    """The MTF of every direction as the document holds it."""
-    with styled():
-        figure = new_page(5.0, PANEL_HEIGHT_IN)
-        axes = figure.subplots()
-        curves = {name: one.curve("mtf") for name, one in record.directions.items()}
-        tops = (band_edges(value, std)[1].max() for _, value, std in curves.values())
-        mark_frequencies(axes, None, float(max(tops)))
-        for name, (freq, value, std) in curves.items():
-            low, high = band_edges(value, std)
-            axes.fill_between(freq, low, high, color=COLORS[name], alpha=0.25, linewidth=0)
-            axes.plot(freq, value, color=COLORS[name], label=name)
-        axes.legend(loc="upper right")
-    return Plate.of_figure(figure, "MTF", "")

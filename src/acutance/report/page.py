@@ -22,17 +22,17 @@ from acutance.report.labels import (
     title_of,
 )
 from acutance.report.paper import new_page, styled
+from acutance.report.recorded import recorded_sections
 from acutance.report.requirements import Required, required_verdicts
 from acutance.report.tables.measurement import headline_table, numbers_of, options_table
 from acutance.report.tables.result import tables
 from acutance.report.tables.target import means_headline, target_tables
-from acutance.targets import TargetResult
+from acutance.targets import Record, TargetResult
 
 if TYPE_CHECKING:
     from acutance.curves.grid import Floats
     from acutance.report.figures.panel import Panel
     from acutance.targets.measurement import Measurement
-    from acutance.targets.record import Record
 
 __all__ = ["page", "panel_plate", "rejection_page", "sections", "verdict_of"]
 
@@ -40,7 +40,7 @@ PLATE_IN, WIDE_IN = 6.0, 12.4
 
 
 def page(
-    result: Result,
+    result: Result | Record,
     *,
     command: str | None = None,
     required: Required = (),
@@ -51,8 +51,8 @@ def page(
 
     Parameters
     ----------
-    result : Measurement, TargetResult, Comparison or sequence of Measurement
-        Several measurements of one target are compared.
+    result : Measurement, Record, TargetResult, Comparison or sequence of Measurement
+        Several measurements of one target are compared. Of a record the MTF alone is drawn.
     command : str, optional
         The command line that produced it; of edges and pulses of a file it is made up from the
         measurement when not given.
@@ -66,6 +66,10 @@ def page(
     str
         A whole document: style and drawings are inside, nothing is loaded from elsewhere.
     """
+    if isinstance(result, Record):
+        boxes = (verdict_of(result), *required_verdicts(result, required))
+        content = recorded_sections(result, boxes, command)
+        return render_page(title_of(result), "", content, provenance(result))
     found = as_result(result)
     content = sections(found, command=command, required=required, backdrop=backdrop, origin=origin)
     if isinstance(found, TargetResult):

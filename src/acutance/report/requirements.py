@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 
 from acutance.report.comparison import Comparison, Result, as_result
 from acutance.report.html import Verdict
+from acutance.targets import Record
 from acutance.targets.conformity import MET, NOT_MET, OPEN, ToleranceLimit, conformity_of
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ _COLOURS: Final[Mapping[str, Literal["good", "usable", "doubtful", "invalid"]]] 
 }  # fmt: skip
 
 
-def answers_to(result: Result, required: Required) -> tuple[tuple[str, Conformity], ...]:
+def answers_to(result: Result | Record, required: Required) -> tuple[tuple[str, Conformity], ...]:
     """What a result says of requirements, with the label of the method where there are several.
 
     Parameters
@@ -35,7 +36,7 @@ def answers_to(result: Result, required: Required) -> tuple[tuple[str, Conformit
     OptionError
         If a text states no limit.
     """
-    found = as_result(result)
+    found = result if isinstance(result, Record) else as_result(result)
     if not isinstance(found, Comparison):
         return tuple(("", one) for one in conformity_of(found, required))
     return tuple(
@@ -45,13 +46,17 @@ def answers_to(result: Result, required: Required) -> tuple[tuple[str, Conformit
     )
 
 
-def required_lines(result: Result, required: Required, title: str = "Required") -> list[str]:
+def required_lines(
+    result: Result | Record, required: Required, title: str = "Required"
+) -> list[str]:
     """The answers as one text under a title, if there are any."""
     lines = [f"  {_sentence(*one)}" for one in answers_to(result, required)]
     return ["\n".join([title, *lines])] if lines else []
 
 
-def required_verdicts(result: Result, required: Required, label: str = "") -> tuple[Verdict, ...]:
+def required_verdicts(
+    result: Result | Record, required: Required, label: str = ""
+) -> tuple[Verdict, ...]:
     """The answers as boxes of a page, in the colours of verdicts."""
     return tuple(
         Verdict(_COLOURS[answer.word], f"{label}Required {_sentence(method, answer)}")

@@ -25,7 +25,7 @@ from acutance.report.tables.result import kind_tables, tables
 from acutance.report.tables.scene_reasons import reasons_table
 from acutance.report.tables.target import notes_on_means
 from acutance.report.tables.uncertainty_budget import uncertainty_line
-from acutance.targets import TargetResult
+from acutance.targets import Record, TargetResult
 
 if TYPE_CHECKING:
     from acutance.scan.edge_table import EdgeTable
@@ -37,12 +37,12 @@ MAX_ROWS = 40
 _REASONS = 6
 
 
-def text(result: Result, *, required: Required = ()) -> str:
+def text(result: Result | Record, *, required: Required = ()) -> str:
     """Any result as text: what was measured, the verdict, the numbers, the checks.
 
     Parameters
     ----------
-    result : Measurement, TargetResult, Comparison or sequence of Measurement
+    result : Measurement, Record, TargetResult, Comparison or sequence of Measurement
     required : sequence of ToleranceLimit or str, optional
         Requirements to be answered: "mtf_nyquist >= 0.09".
 
@@ -51,18 +51,24 @@ def text(result: Result, *, required: Required = ()) -> str:
     str
         Several lines, without a newline at the end.
     """
-    found = as_result(result)
+    found = result if isinstance(result, Record) else as_result(result)
     if isinstance(found, TargetResult):
         return _target_text(found, required)
     if isinstance(found, Comparison):
         return _comparison_text(found, required)
+    of_kind: tuple[Table, ...] = ()
+    if isinstance(found, Record):
+        # The line of the target and what a kind adds need its details.
+        named = title_of(found)
+    else:
+        named, of_kind = describe_measurement(found), kind_tables(found)
     parts = [
-        f"{describe_measurement(found)}\n  {describe_image(found)}",
+        f"{named}\n  {describe_image(found)}",
         *([str(found.verdict)] if found.checks else []),
         *required_lines(found, required),
         table_text(numbers_table(found), drop_last=1),
         *([f"  {causes}"] if (causes := uncertainty_line(found)) else []),
-        *(table_text(table) for table in kind_tables(found) if not table.page_only),
+        *(table_text(table) for table in of_kind if not table.page_only),
     ]
     if found.checks:
         checks = [
@@ -75,7 +81,7 @@ def text(result: Result, *, required: Required = ()) -> str:
     return "\n\n".join(parts)
 
 
-def _verdict_lines(measurement: Measurement) -> list[str]:
+def _verdict_lines(measurement: Measurement | Record) -> list[str]:
     """Verdict and how many checks failed, then what each of those found."""
     counted = count_failed_checks([measurement])
     first = f"{measurement.verdict.word}: {counted}" if measurement.checks else counted

@@ -329,7 +329,8 @@ def _stated_std(parts: Sequence[Measurement | Record], orientation: str, metric:
     stds = [
         number.std * math.sqrt(systematic_share(one.budget, orientation, metric, STATED_TERMS))
         for one in parts
-        if (number := getattr(one.directions[orientation], metric)) is not None
+        for name, response in one.directions.items()
+        if name == orientation and (number := getattr(response, metric)) is not None
     ]
     return sum(stds) / len(stds) if stds else 0.0
 

@@ -258,6 +258,11 @@ class Record(ShortRepr, HasDirections[RecordedDirection], HasChecks):
         return tuple(map(BudgetTerm.from_dict, self.fields.get("budget", ())))
 
     @property
+    def is_ratio(self) -> bool:
+        """Whether the curves are a sensor's MTF over another's, and not its own."""
+        return self.fields.get("quantity") == "mtf_low_over_mtf_high"
+
+    @property
     def snr(self) -> float:
         """Signal to noise ratio; ``nan`` where none is known."""
         snr = self.fields["snr"]

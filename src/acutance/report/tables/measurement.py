@@ -10,17 +10,18 @@ from acutance.curves import Estimate
 from acutance.report.check_words import write_found
 from acutance.report.html import Table
 from acutance.report.labels import (
+    MISSING,
     flatten_options,
     measurement_metric_words,
     metric_words,
     transfer_name,
     word_estimate,
 )
+from acutance.targets.record import Record
 
 if TYPE_CHECKING:
     from acutance.targets.check import Check
     from acutance.targets.measurement import Measurement
-    from acutance.targets.record import Record
 
 __all__ = [
     "STEP_CPP",
@@ -78,9 +79,13 @@ def headline_table(numbers: Numbers, measurement: Measurement | None = None) -> 
     return Table(("", *labels), rows, "l" + "r" * len(names))
 
 
-def numbers_table(measurement: Measurement) -> Table:
+def numbers_table(measurement: Measurement | Record) -> Table:
     """All numbers with their intervals and meanings; across and along stand side by side."""
-    numbers = numbers_of(measurement)
+    numbers = (
+        recorded_numbers(measurement)
+        if isinstance(measurement, Record)
+        else numbers_of(measurement)
+    )
     rows = []
     for name in next(iter(numbers.values())):
         words = measurement_metric_words(measurement, name)
@@ -95,7 +100,7 @@ def numbers_table(measurement: Measurement) -> Table:
     return Table(columns, tuple(rows), align, title="Numbers", notes=_not_measured(measurement))
 
 
-def _not_measured(measurement: Measurement) -> tuple[str, ...]:
+def _not_measured(measurement: Measurement | Record) -> tuple[str, ...]:
     missing = [one for one in measurement.directions if one not in measurement.measured_directions]
     return tuple(
         f"The target shows nothing {name} track: what the JSON document has in that direction "
@@ -166,14 +171,17 @@ def word_curve(here: Estimate) -> tuple[str, str]:
     return f"{here.value:.4f}", f"{max(low, 0.0):.4f} … {high:.4f}"
 
 
-def options_table(measurement: Measurement) -> Table:
+def options_table(measurement: Measurement | Record) -> Table:
     """Method, options, software and time."""
     from acutance import __version__
 
+    version = __version__
+    if isinstance(measurement, Record):
+        version = str(measurement.fields.get("software", {}).get("acutance", MISSING))
     rows = (
         ("method", measurement.method),
         *flatten_options(measurement.options),
-        ("acutance", __version__),
+        ("acutance", version),
         ("measured at", measurement.measured_at.isoformat(sep=" ", timespec="seconds")),
     )
     return Table(("Option", "Value"), rows, "ll", title="How it was measured", page_only=True)

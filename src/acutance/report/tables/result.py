@@ -21,7 +21,7 @@ from acutance.report.tables.scene import scene_tables
 from acutance.report.tables.star import star_tables
 from acutance.report.tables.target import target_tables
 from acutance.report.tables.uncertainty_budget import uncertainty_table
-from acutance.targets import TargetResult
+from acutance.targets import Record, TargetResult
 
 if TYPE_CHECKING:
     from acutance.report.html import Table
@@ -40,19 +40,23 @@ KIND_TABLES: dict[str, Callable[[Any], tuple[Table, ...]]] = {
 """What each kind of target tabulates besides the numbers that every measurement has."""
 
 
-def tables(result: Result) -> tuple[Table, ...]:
+def tables(result: Result | Record) -> tuple[Table, ...]:
     """The tables of any result: numbers, what the kind adds, checks, uncertainties, MTF, options.
 
     Parameters
     ----------
-    result : Measurement, TargetResult, Comparison or sequence of Measurement
-        Several measurements of one target are compared.
+    result : Measurement, Record, TargetResult, Comparison or sequence of Measurement
+        Several measurements of one target are compared. A record has no table that needs pixels.
 
     Returns
     -------
     tuple of Table
         With titles, columns and rows of text.
     """
+    if isinstance(result, Record):
+        from acutance.report.recorded import recorded_tables
+
+        return recorded_tables(result)
     found = as_result(result)
     if isinstance(found, TargetResult):
         return target_tables(found)

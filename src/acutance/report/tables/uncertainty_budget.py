@@ -11,13 +11,14 @@ from acutance.targets.uncertainty_budget import MAIN_NUMBERS, BudgetTerm
 
 if TYPE_CHECKING:
     from acutance.targets.measurement import Measurement
+    from acutance.targets.record import Record
 
 __all__ = ["uncertainty_line", "uncertainty_table"]
 
 _LEAST_SHARE = 0.01
 
 
-def uncertainty_table(result: Measurement) -> Table:
+def uncertainty_table(result: Measurement | Record) -> Table:
     """Every cause: how it was found, its standard deviation and its share of the variance."""
     directions = {term.direction for term in result.budget}
     rows = tuple(
@@ -44,7 +45,7 @@ def uncertainty_table(result: Measurement) -> Table:
     return Table(columns, rows, align, title="Uncertainty budget", notes=notes, page_only=True)
 
 
-def uncertainty_line(result: Measurement) -> str:
+def uncertainty_line(result: Measurement | Record) -> str:
     """The causes of the standard deviation of the MTF at Nyquist, the largest first."""
     name = MAIN_NUMBERS[0]
     parts = {}
