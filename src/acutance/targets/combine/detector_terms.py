@@ -8,7 +8,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.targets.combine.plane import Plane
-from acutance.targets.combine.sensor_terms import sinc_growth
+from acutance.targets.combine.sensor_terms import upright_smear, upright_smear_slopes
 from acutance.targets.combine.term import Term
 
 __all__ = ["DETECTOR_PARAMETERS", "detector_terms"]
@@ -23,26 +23,17 @@ _DIFFUSION_MEAN, _DIFFUSION_STD = math.log(0.1), 1.0
 
 def detector_terms(detector_px: tuple[float, float]) -> dict[str, Term]:
     """Both, of a detector of a stated width across and along, in pixels."""
+    log_px = np.log(detector_px)
 
+    # A rectangle is a smear along both axes; both of its widths change with the fill.
     def detector(p: Floats, plane: Plane) -> Floats:
-        """By the logarithm of its width over the stated one."""
-        across, along = waves(p, plane)
-        return np.asarray(np.sinc(across) * np.sinc(along))
+        return upright_smear(p + log_px, plane)
 
     def detector_slopes(p: Floats, plane: Plane) -> Floats:
-        across, along = waves(p, plane)
-        one, other = np.sinc(across), np.sinc(along)
-        by_both = sinc_growth(across, one) * other + one * sinc_growth(along, other)
-        return np.asarray(by_both[..., None, :])
+        return np.asarray(upright_smear_slopes(p + log_px, plane).sum(axis=-2, keepdims=True))
 
-    def waves(p: Floats, plane: Plane) -> tuple[Floats, Floats]:
-        """Cycles over the detector, across and along."""
-        across, along = detector_px
-        return np.exp(p) * (across * plane.u_cpp), np.exp(p) * (along * plane.v_cpp)
-
-    return {"diffusion": _DIFFUSION, "detector": Term(
-        detector, (0.0,), (_FILL_STD,), _fill_numbers, detector_slopes
-    )}  # fmt: skip
+    last = Term(detector, (0.0,), (_FILL_STD,), _fill_numbers, detector_slopes)
+    return {"diffusion": _DIFFUSION, "detector": last}
 
 
 def _fill_numbers(p: Floats) -> dict[str, float]:

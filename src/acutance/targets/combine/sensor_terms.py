@@ -21,7 +21,7 @@ from acutance.targets.combine.processing_terms import PROCESSING_TERMS
 from acutance.targets.combine.resampling_term import RESAMPLING
 from acutance.targets.combine.term import Term, aperture, columns, logistic, logistic_slope
 
-__all__ = ["TERMS", "sinc_growth"]
+__all__ = ["TERMS", "upright_smear", "upright_smear_slopes"]
 
 Complexes = NDArray[np.complex128]
 
@@ -105,23 +105,23 @@ def _smear(p: Floats, plane: Plane) -> Floats:
     return np.asarray(np.sinc(across * plane.u_cpp + along * plane.v_cpp))
 
 
-def sinc_growth(waves: Floats, sinc: Floats) -> Floats:
+def _sinc_growth(waves: Floats, sinc: Floats) -> Floats:
     """Derivative of ``sinc(x)`` by the logarithm of x, beside its values."""
     return np.asarray(np.cos(math.pi * waves) - sinc)
 
 
-def _upright_smear(p: Floats, plane: Plane) -> Floats:
+def upright_smear(p: Floats, plane: Plane) -> Floats:
     """Smears along both axes of the image, by the logarithms of their lengths."""
     # A length of 0 is stationary: an expansion about it knows nothing of smears.
     across, along = _smeared_waves(p, plane)
     return np.asarray(np.sinc(across) * np.sinc(along))
 
 
-def _upright_smear_slopes(p: Floats, plane: Plane) -> Floats:
+def upright_smear_slopes(p: Floats, plane: Plane) -> Floats:
     across, along = _smeared_waves(p, plane)
     one, other = np.sinc(across), np.sinc(along)
-    by_across = sinc_growth(across, one) * other
-    return np.stack([by_across, one * sinc_growth(along, other)], axis=-2)
+    by_across = _sinc_growth(across, one) * other
+    return np.stack([by_across, one * _sinc_growth(along, other)], axis=-2)
 
 
 def _smeared_waves(p: Floats, plane: Plane) -> tuple[Floats, Floats]:
@@ -230,7 +230,7 @@ TERMS: dict[str, Term] = {
     ),
     "smear": Term(_smear, (0.0, 0.0), (1.2, 1.2), _smear_numbers),
     "upright smear": Term(
-        _upright_smear, (-0.4, -0.4), (0.8, 0.8), _upright_smear_numbers, _upright_smear_slopes
+        upright_smear, (-0.4, -0.4), (0.8, 0.8), _upright_smear_numbers, upright_smear_slopes
     ),
     "halo": Term(_halo, (-2.5, math.log(3.0), -0.5), (0.7, 0.4, 1.5), _halo_numbers, _halo_slopes),
     "trail": Term(_trail, (0.0, 0.0), (0.4, 0.4), _trail_numbers),
