@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import math
 import struct
 from datetime import UTC, date, datetime, timedelta
 from pathlib import Path
@@ -79,6 +80,8 @@ def test_a_selection_goes_out(several, tmp_path, to):
 
 texts = st.text(st.characters(exclude_categories=("Cs",), exclude_characters="\0"), max_size=12)
 numbers = st.one_of(st.none(), st.floats(), st.integers(-(2**53), 2**53))
+# No deviation is below 0: an `Estimate` of such a one is refused.
+deviations = st.one_of(st.none(), st.just(math.nan), st.floats(0), st.integers(0, 2**53))
 values = st.recursive(
     st.one_of(numbers, st.booleans(), texts),
     lambda inner: st.one_of(st.lists(inner, max_size=3), st.dictionaries(texts, inner, max_size=3)),
@@ -109,7 +112,7 @@ targets = st.builds(
 def entries(draw, record):
     """An entry of anything that may be known, or not."""
     number = record.document["mtf_nyquist"]
-    changed = {"mtf_nyquist": {**number, "value": draw(st.floats(0, 1)), "std": draw(numbers)}}
+    changed = {"mtf_nyquist": {**number, "value": draw(st.floats(0, 1)), "std": draw(deviations)}}
     measured = ac.Record({**record.document, **changed, "note": draw(values)})
     rejected = ac.Rejected("fit", draw(texts), draw(st.dictionaries(texts, values, max_size=3)))
     is_measured = draw(st.booleans())

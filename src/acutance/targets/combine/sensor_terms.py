@@ -118,6 +118,7 @@ def upright_smear(p: Floats, plane: Plane) -> Floats:
 
 
 def upright_smear_slopes(p: Floats, plane: Plane) -> Floats:
+    """Derivatives of `upright_smear`, (..., 2, n)."""
     across, along = _smeared_waves(p, plane)
     one, other = np.sinc(across), np.sinc(along)
     by_across = _sinc_growth(across, one) * other

@@ -72,7 +72,8 @@ shapes of sensors at SNR 40 to 200, 54 % of the intervals of MTF at Nyquist held
 held width 99 %; of those of 2 px 98 %."""
 _FREE_ADVICE = (
     "so narrow a pulse has several widths that fit, each with another blur; hold the width that "
-    "was measured on the ground (fit_width=False, --hold-width), or use a wider target"
+    "was measured on the ground (fit_width=False, --hold-width), or use a target of three times "
+    "the GSD"
 )
 _HELD_ADVICE = (
     "the held width, or the GSD, is wrong, and every number with it; leave the width free "
