@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
@@ -34,7 +34,10 @@ __all__ = [
     "StatedOptions",
     "method_option",
     "parse_gsd",
+    "without_others",
 ]
+
+_T = TypeVar("_T")
 
 _AXES: dict[str, AlongTrack] = {"x": "x", "y": "y"}
 
@@ -155,10 +158,7 @@ class PixelOptions:
     def open(self, path: str) -> tuple[tuple[Image, ...], dict[str, Region | None]]:
         """As `open_features`; features that are no regions are named on stderr."""
         images, found = self.open_features(path)
-        for name, one in found.items():
-            if isinstance(one, str):
-                say(f"acutance: region {name}: {one}")
-        return images, {name: one for name, one in found.items() if not isinstance(one, str)}
+        return images, without_others(found)
 
     def open_features(self, path: str) -> tuple[tuple[Image, ...], dict[str, Region | str | None]]:
         """Open the bands of the image and find the regions the options ask for, by name.
@@ -318,6 +318,17 @@ class StatedOptions(SoftnessOptions):
         """Fields of the options of an edge or a pulse."""
         level = parse_share("--level-uncertainty", self.level_uncertainty)
         return {**self.softness, "level_uncertainty": level}
+
+
+def without_others(found: Mapping[str, _T | str]) -> dict[str, _T]:
+    """The regions among features; why the others are none is said on stderr."""
+    regions: dict[str, _T] = {}
+    for name, one in found.items():
+        if isinstance(one, str):
+            say(f"acutance: region {name}: {one}")
+        else:
+            regions[name] = one
+    return regions
 
 
 def _part_inside(region: Region, shape: tuple[int, int]) -> str:

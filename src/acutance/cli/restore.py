@@ -18,6 +18,7 @@ from acutance.cli.options import (
     JsonOption,
     method_option,
     parse_gsd,
+    without_others,
 )
 from acutance.cli.output import OutputFile, check_optional, check_output
 from acutance.cli.progress import progress_bar
@@ -264,19 +265,15 @@ def apply(
 
 def _regions(image: str, roi: str | None, nodata: float | None) -> Mapping[str, Region]:
     """The regions of ``--roi`` by their names, each in the image."""
-    from acutance.raster import Region, open_image
+    from acutance.raster import open_image
     from acutance.raster.roi import parse_features
 
     if roi is None:
         return {}
     before = open_image(image, nodata=nodata)
-    regions: dict[str, Region] = {}
-    for name, one in parse_features(roi, before).items():
-        if isinstance(one, Region):
-            one.box(before.shape)
-            regions[name] = one
-        else:
-            say(f"acutance: region {name}: {one}")
+    regions = without_others(parse_features(roi, before))
+    for region in regions.values():
+        region.box(before.shape)
     return regions
 
 

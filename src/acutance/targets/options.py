@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import types
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Iterable, Mapping
 from functools import cache
 from numbers import Integral, Real
 from typing import (
@@ -22,7 +22,7 @@ import numpy as np
 
 from acutance.errors import OptionError
 
-__all__ = ["chosen_options", "published_options", "require_types"]
+__all__ = ["chosen_options", "published_options", "require_known_method", "require_types"]
 
 Options = TypeVar("Options")
 
@@ -45,6 +45,19 @@ def chosen_options(options: Any, kind: type[Options]) -> Options:
             "them out"
         )
     return options
+
+
+def require_known_method(kind: str, name: Any, known: Iterable[str]) -> None:
+    """Refuse a method that a kind of target has not.
+
+    Raises
+    ------
+    OptionError
+        If it is none of the known ones; they are named.
+    """
+    # A list is equal to no name, but cannot be looked for among those of a dict either.
+    if not isinstance(name, str) or name not in known:
+        raise OptionError(f"there is no {kind} method {name!r}: choose one of {', '.join(known)}")
 
 
 @cache

@@ -15,11 +15,11 @@ from numpy.typing import ArrayLike
 
 from acutance.curves import Estimate, Otf2d
 from acutance.curves.grid import Floats
-from acutance.errors import OptionError, TargetError
+from acutance.errors import TargetError
 from acutance.numerics.clipping import clipped_share
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Box, Gsd, Image, Region
-from acutance.targets.options import chosen_options
+from acutance.targets.options import chosen_options, require_known_method
 from acutance.targets.pair import tuned
 from acutance.targets.pair.axis_gaussian import AxisGaussian
 from acutance.targets.pair.checks import check_pair
@@ -98,7 +98,7 @@ def measure_biresolution(
     TargetError
         If the images hold no structure, or nothing in common.
     """
-    _require_method(method)
+    require_known_method("bi-resolution", method, BIRESOLUTION_METHODS)
     chosen = chosen_options(options, BiresolutionOptions)
     coarse, fine = Image.of(low), Image.of(high)
     grid = pair_grid(coarse, fine, ratio)
@@ -143,12 +143,6 @@ def measure_biresolution(
         reference_known=reference is not None,
         details=PairDetails(gaussian, fit, pixel_fit, spectra, residuals),
     )  # fmt: skip
-
-
-def _require_method(method: str) -> None:
-    if not isinstance(method, str) or method not in BIRESOLUTION_METHODS:
-        known = ", ".join(BIRESOLUTION_METHODS)
-        raise OptionError(f"there is no bi-resolution method {method!r}: choose one of {known}")
 
 
 def _as_region(roi: RoiLike, image: Image) -> Region | None:

@@ -17,7 +17,7 @@ from acutance.numerics.noise import outlier_share
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd, Image
 from acutance.targets.check import Check, Checks
-from acutance.targets.options import chosen_options, published_options
+from acutance.targets.options import chosen_options, published_options, require_known_method
 from acutance.targets.points.checks import check_points, check_positions, check_survey
 from acutance.targets.points.detect import RejectedSpot
 from acutance.targets.points.extent import excess_variances
@@ -195,7 +195,7 @@ def measure_points(
         If no source is usable; the message counts why.
     """
     chosen = chosen_options(options, PointsOptions)
-    _require_method(method)
+    require_known_method("points", method, POINTS_METHODS)
     region = read_region(image, roi, gsd_m)
     wanted = None if positions is None else _places_of("positions", positions) - _origin(region)
     selected = select_spots(region, wanted, chosen)
@@ -234,12 +234,6 @@ def _with_survey(
     )  # fmt: skip
     checks = (*measurement.checks, check_survey(survey, options.limits))
     return replace(measurement, survey=survey, checks=checks)
-
-
-def _require_method(method: str) -> None:
-    if not isinstance(method, str) or method not in POINTS_METHODS:
-        known = ", ".join(POINTS_METHODS)
-        raise OptionError(f"there is no points method {method!r}: choose one of {known}")
 
 
 def _places_of(name: str, stated: ArrayLike) -> Floats:

@@ -21,7 +21,7 @@ from acutance.geometry.line import Line
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd, Image, value_far_off
 from acutance.targets.check import Check, Checks, limit_of
-from acutance.targets.options import chosen_options, published_options
+from acutance.targets.options import chosen_options, published_options, require_known_method
 from acutance.targets.region import RegionPixels, RoiLike, read_region
 from acutance.targets.steps import Steps, finished
 from acutance.targets.straight.check_data import CheckData
@@ -230,8 +230,7 @@ def require_method(name: str) -> Callable[[EdgePixels, EdgeOptions], Steps[EdgeF
     OptionError
         If there is none.
     """
-    if not isinstance(name, str) or name not in METHODS:
-        raise OptionError(f"there is no edge method {name!r}: choose one of {', '.join(METHODS)}")
+    require_known_method("edge", name, METHODS)
     return METHODS[name]
 
 

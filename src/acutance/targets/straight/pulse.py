@@ -14,7 +14,7 @@ from acutance.errors import OptionError, TargetError
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd, Image
 from acutance.targets.check import Check, Checks, limit_of
-from acutance.targets.options import chosen_options, published_options
+from acutance.targets.options import chosen_options, published_options, require_known_method
 from acutance.targets.region import RegionPixels, RoiLike, read_region
 from acutance.targets.steps import Steps, finished
 from acutance.targets.straight.check_data import CheckData
@@ -222,9 +222,7 @@ def require_pulse_method(
     OptionError
         If there is none.
     """
-    if not isinstance(name, str) or name not in PULSE_METHODS:
-        known = ", ".join(PULSE_METHODS)
-        raise OptionError(f"there is no pulse method {name!r}: choose one of {known}")
+    require_known_method("pulse", name, PULSE_METHODS)
     return PULSE_METHODS[name]
 
 
