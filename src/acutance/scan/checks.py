@@ -32,7 +32,8 @@ __all__ = ["SCENE_CHECKS", "check_scene"]
 SCENE_CHECKS = (
     "edges_used", "trusted_share", "scene_directions", "ideal_share", "ideal_borders",
     "strange_share", "scene_settled", "form_agrees", "halo_share", "rival", "parts_agree",
-    "diagonals", "field_change", "full_pixel", "stated_gsd", *SCENE_PROCESSING_CHECKS,
+    "diagonals", "axes_differ", "field_change", "full_pixel", "stated_gsd",
+    *SCENE_PROCESSING_CHECKS,
 )  # fmt: skip
 """Names of all checks of a scene."""
 
@@ -40,6 +41,8 @@ _DIRECTION_DEG = 15.0
 _SIGNIFICANT = 2.0
 _DECIMATED = 0.7
 """MTF at Nyquist of images that were decimated three times or more; hardly of sharpened ones."""
+_SEEN = 0.2
+"""Where the MTF is less, a small difference of blur is a large factor."""
 
 
 def check_scene(
@@ -101,6 +104,7 @@ def check_scene(
         _rival(fit.rivals, transfer, limits),
         _parts_agree(fit.parts, limits),
         _diagonals(transfer, limits),
+        _axes_differ(transfer, fit.parts, limits),
         _field_change(field, limits),
         full_pixel(
             [transfer.response(deg).mtf_nyquist for deg in (0.0, 90.0)], limits, caution=_DECIMATED
@@ -205,6 +209,29 @@ def _diagonals(transfer: Otf2d, limits: Limits) -> Check:
     else:
         found = f"{told}: within {sigmas} they agree"
     return answer("diagonals", least, found, limits)
+
+
+def _axes_differ(transfer: Otf2d, parts: PartsFit | None, limits: Limits) -> Check:
+    """How far the larger of the MTFs across and along surely exceeds the other, relative to it.
+
+    At Nyquist, or where both tell more. Borders of one direction that are all soft alike pass for a
+    smear of the sensor; where parts of the scene were compared they would differ.
+    """
+    freq = SLICE_FREQ_CPP[SLICE_FREQ_CPP <= NYQUIST_CPP]
+    across, along = (transfer.response(deg).mtf for deg in (0.0, 90.0))
+    mean = 0.5 * (across(freq).value + along(freq).value)
+    at = float(freq[np.flatnonzero(mean >= _SEEN).max(initial=0)])
+    one, other = (max(float(curve(at)), 1e-9) for curve in (across, along))
+    std = float(np.linalg.norm(across.gradient(at) / one - along.gradient(at) / other))
+    excess = math.expm1(max(abs(math.log(one / other)) - _SIGNIFICANT * std, 0.0))
+    told = f"at {at:.2g} c/px the MTF is {one:.3f} across and {other:.3f} along"
+    sigmas = f"{_SIGNIFICANT:.0f} standard deviations"
+    if excess > 0:
+        found = f"{told}, surely (by {sigmas}) {100 * excess:.0f} % more"
+    else:
+        found = f"{told}: within {sigmas} they agree"
+    caution = None if parts is None else math.inf
+    return answer("axes_differ", min(excess, MAX_RATIO), found, limits, caution=caution)
 
 
 def _field_change(field: Field, limits: Limits) -> Check:

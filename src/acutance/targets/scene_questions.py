@@ -69,6 +69,12 @@ SCENE_QUESTIONS: Final = {
         "objects of one diagonal are softer, or those of few borders were taken for ideal ones; "
         "scan a larger part, or another image",
     ),
+    "axes_differ": Question(
+        "By which share does the larger MTF across or along surely exceed the other?", "<=", 0.25,
+        "a smear of one pixel makes 57 % at Nyquist; borders of one direction that are all soft "
+        "alike pass for one: scan a larger part, or another image, and compare",
+        severity="note", caution=0.6,
+    ),
     "field_change": Question(
         "By which share of its mean does sharpness surely change over the field?", "<=", 0.1,
         "the numbers are means over the field: read those of the places", severity="note",

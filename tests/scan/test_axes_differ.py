@@ -1,0 +1,32 @@
+"""A sensor twice as sharp across as along is seldom one: borders of a direction are soft alike."""
+
+import numpy as np
+import pytest
+from bare_ground import bare_ground
+
+import acutance as ac
+from acutance import optics, simulate
+
+
+@pytest.mark.parametrize(
+    ("smear_px", "size_px", "word"),
+    [(0.01, 480, "good"), (0.9, 480, "usable"), (1.3, 480, "doubtful"), (1.3, 720, "usable")],
+)
+def test_a_scan_says_when_its_axes_surely_differ(smear_px, size_px, word):
+    """A smear of .9 px makes 43 % at Nyquist, one of 1.3 px 129 %.
+
+    Where there are edges enough the parts of the scene were asked, and agree about it.
+    """
+    blocks = [optics.Gaussian(0.35), optics.Detector(), optics.Smear(smear_px, "along")]
+    image, _ = simulate.landscape(
+        optics.Sensor(blocks), shape=(size_px, size_px), snr=100,
+        options=bare_ground(density_per_mpx=120), rng=np.random.default_rng(7),
+    )  # fmt: skip
+    scene = ac.scan_scene(image)
+    (check,) = (one for one in scene.checks if one.name == "axes_differ")
+    assert check.passed == (word == "good")
+    assert scene.verdict.word == word
+    if word == "doubtful":
+        assert "soft alike" in scene.verdict.sentence
+    elif word == "usable":
+        assert check.value > 0.25
