@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.special import gammainc
 
 from acutance.curves.grid import Floats
 from acutance.numerics.compiled import compiled
@@ -20,6 +22,10 @@ __all__ = [
 
 _MIN_PILED_UP = 5
 _MIN_EXCESS = 3
+_NEAR_END = 4
+"""Values next to the end by which chance is judged."""
+_BY_CHANCE = 1e-3
+"""Of 500 unclipped edges one had five pixels at the end of a side and one at the next value."""
 _MIN_PILED_IN_IMAGE = 20
 """Pixels of an image at the end of its range by which it is clipped there."""
 _MIN_LEVELS = 8
@@ -111,24 +117,32 @@ def piled_up_share(values: Floats) -> float:
     """Share of some pixels, (n,), that have the largest value of all, where it is more than chance.
 
     Clipping before writing leaves many pixels at the end and few next to it; noise has few at its
-    end.
+    end. As many as lie at the next four values on average are expected, by Poisson's law.
     """
-    last, before = _counts_at_end(values)
-    piled = last >= _MIN_PILED_UP and last > _MIN_EXCESS * before
-    return last / values.size if piled else 0.0
+    if not values.size:
+        return 0.0
+    last, *others = _counts_at_end(values).tolist()
+    seen = [count for count in others if count > 0]
+    mean = sum(seen) / max(len(seen), 1)
+    piled = last >= _MIN_PILED_UP and last > _MIN_EXCESS * others[0]
+    return last / values.size if piled and float(gammainc(last, mean)) < _BY_CHANCE else 0.0
 
 
 @compiled
-def _counts_at_end(values: Floats) -> tuple[int, int]:
-    """How many of some values are the largest, and how many the largest but that."""
-    largest, second, last, before = -np.inf, -np.inf, 0, 0
+def _counts_at_end(values: Floats) -> NDArray[np.intp]:
+    """How many of some values are the largest, the largest but that, and so on; 0 of no value."""
+    largest = np.full(_NEAR_END + 1, -np.inf)
+    count = np.zeros(_NEAR_END + 1, np.intp)
     for value in values:
-        if value > largest:
-            largest, second, last, before = value, largest, 1, last
-        elif value == largest:
-            last += 1
-        elif value > second:
-            second, before = value, 1
-        elif value == second:
-            before += 1
-    return last, before
+        if not value >= largest[_NEAR_END]:
+            continue
+        place = 0
+        while value < largest[place]:
+            place += 1
+        if value == largest[place]:
+            count[place] += 1
+            continue
+        for later in range(_NEAR_END, place, -1):
+            largest[later], count[later] = largest[later - 1], count[later - 1]
+        largest[place], count[place] = value, 1
+    return count
