@@ -284,6 +284,21 @@ def test_the_ideal_objects_of_every_direction_are_a_table(measured):
     assert sum(int(row[1]) for row in table.rows) == measured.edges.used.sum()
 
 
+def test_the_forms_of_the_sensor_say_whether_the_product_was_interpolated(measured):
+    (table,) = [one for one in scene_tables(measured) if one.title == "Forms of the sensor"]
+    weights = measured.to_dict()["forms"]
+    assert list(weights.values()) == sorted(weights.values(), reverse=True)
+    assert sum(weights.values()) == pytest.approx(1.0, abs=1e-4)
+    for name, weight, meaning in table.rows:
+        assert float(weight) == pytest.approx(weights[name], abs=0.006)
+        terms = name.split(" x ")
+        is_of_product = not {"interpolation", "resampling", "phase"}.isdisjoint(terms)
+        assert is_of_product == ("not the instrument" in meaning)
+    words = "gaussian x detector x halo x resampling"
+    of_splines = replace(measured, forms={words: 1.0})
+    assert "interpolated by splines: the product" in text(of_splines)
+
+
 def test_of_too_few_edges_nothing_is_shown_over_the_field(constant):
     assert not constant.field.is_fitted
     assert tuple(one.title for one in panels(constant)[-3:]) == PANELS[:3]

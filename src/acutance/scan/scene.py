@@ -275,6 +275,7 @@ def _measurement(
         field=field,
         objects={name: Estimate(value, std, 0.0, 1.0) for name, (value, std) in fit.kinds.items()},
         ideal_by_direction=fit.ideal_by_direction,
+        forms=fit.forms,
         normal_deg_bins=tuple(fit.normal_deg.tolist()),
         details=fit,
     )

@@ -95,6 +95,8 @@ class SceneMeasurement(Measurement):
         Shares of the objects: "ideal", "soft", and "strange" for edges that are neither.
     ideal_by_direction : tuple of IdealShare
         Shares of ideal objects among those of about one direction: normal_deg, edges, share.
+    forms : mapping of str to float
+        Weights of the forms of sensor that the mean is of, the largest first.
     normal_deg_bins : tuple of float
         Mean directions of the edges, -90 to 90 degrees.
     """
@@ -103,6 +105,7 @@ class SceneMeasurement(Measurement):
     field: Field
     objects: Mapping[str, Estimate]
     ideal_by_direction: tuple[IdealShare, ...]
+    forms: Mapping[str, float]
     normal_deg_bins: tuple[float, ...]
 
     @cached_property
@@ -195,6 +198,7 @@ class SceneMeasurement(Measurement):
                 {"normal_deg": one.normal_deg, "edges": one.edges, "share": one.share.to_dict()}
                 for one in self.ideal_by_direction
             ],
+            "forms": {name: round(weight, 6) for name, weight in self.forms.items()},
             "field": {**self.field.to_dict(), "places": [place.to_dict() for place in places]},
         }
 

@@ -33,7 +33,7 @@ from acutance.scan.shares import SECTOR_DEG, share_covariances
 from acutance.scan.softness import KINDS
 from acutance.targets.combine.curves import ChiSquare
 from acutance.targets.combine.fit import CombinedFit, combine_curves
-from acutance.targets.combine.sensor_forms import SCENE_FORMS
+from acutance.targets.combine.sensor_forms import SCENE_FORMS, SensorForm
 from acutance.targets.combine.weighted_forms import CombinedOtf
 
 __all__ = ["IdealShare", "SensorFit", "fit_sensor"]
@@ -129,6 +129,15 @@ class SensorFit:
     def _covariances(self) -> Floats:
         member = self.member
         return share_covariances(member.part, member.sector, member.share)
+
+    @property
+    def forms(self) -> dict[str, float]:
+        """Weights of the forms of the sensor by their names, however oblique, largest first."""
+        weight: dict[str, float] = {}
+        for one in self.otf.forms:
+            name = SensorForm(one.form.oblique_terms).name
+            weight[name] = weight.get(name, 0.0) + one.weight
+        return dict(sorted(weight.items(), key=lambda item: -item[1]))
 
     @property
     def common_errors_px2(self) -> dict[str, Floats]:

@@ -29,6 +29,14 @@ _OBJECTS = {
     "soft": "blurred borders on the ground",
     "strange": "neither: too sharp, or of another shape",
 }
+_OF_PRODUCT = {
+    "interpolation": "interpolated by cubic convolution",
+    "resampling": "interpolated by splines",
+    "phase": "interpolated at one phase of its pixels",
+}
+"""Terms of forms that are none of an instrument."""
+_MIN_WEIGHT = 0.02
+_MAX_FORMS = 5
 _MIN_CHANCE = 1e-4
 
 
@@ -38,10 +46,10 @@ def word_chance(chance: float) -> str:
 
 
 def scene_tables(measurement: SceneMeasurement) -> tuple[Table, ...]:
-    """Edges by verdict, the shares of the objects, sharpness over the field, what was left out."""
+    """Edges, objects, forms of the sensor, sharpness over the field, what was left out."""
     return (
         _edges_table(measurement), _objects_table(measurement), _directions_table(measurement),
-        _field_table(measurement),
+        _forms_table(measurement), _field_table(measurement),
         reasons_table(measurement.edges),
     )  # fmt: skip
 
@@ -92,6 +100,26 @@ def _directions_table(measurement: SceneMeasurement) -> Table:
         ),
         page_only=True,
     )  # fmt: skip
+
+
+def _forms_table(measurement: SceneMeasurement) -> Table:
+    told = [(name, weight) for name, weight in measurement.forms.items() if weight >= _MIN_WEIGHT]
+    rows = tuple((name, f"{weight:.2f}", _form_meaning(name)) for name, weight in told[:_MAX_FORMS])
+    return Table(
+        ("form", "weight", "meaning"), rows, "lrl", title="Forms of the sensor",
+        notes=(
+            "The sensor is the mean over forms, each by its weight. Where the image was "
+            "interpolated onto its grid, the numbers are those of the product: the instrument "
+            "was sharper.",
+        ),
+    )  # fmt: skip
+
+
+def _form_meaning(name: str) -> str:
+    """What a form says of the image."""
+    terms = name.split(" x ")
+    how = [words for term, words in _OF_PRODUCT.items() if term in terms]
+    return f"{how[0]}: the product, not the instrument" if how else ""
 
 
 def _in_common(options: Mapping[str, Any]) -> str:
