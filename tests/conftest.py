@@ -118,8 +118,8 @@ def postgres_url(postgres_server: PostgresServer) -> str:
 def few_forms() -> Callable[[], AbstractContextManager[None]]:
     """``with few_forms():`` the sensor of a scene is one of two plain forms.
 
-    All steps of a scan are done, and in half of the time: of scenes whose edges, windows or
-    documents are asked, not how well the forms together describe their sensor.
+    All steps of a scan are done, in two thirds of the time or less: of scenes whose edges, windows
+    or documents are asked, not how well the forms together describe their sensor.
     """
     from acutance.scan import first_sensor, sensor_fit
     from acutance.targets.combine.sensor_forms import SCENE_FORMS
