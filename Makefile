@@ -3,20 +3,25 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: test demo docs lint bench clean
+.PHONY: test demo docs lint loops bench clean
 
 $(VENV)/.installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[test,lint]"
 	touch $@
 
-test: $(VENV)/.installed lint
+test: $(VENV)/.installed
+	$(MAKE) --jobs=2 lint loops
 	$(BIN)/python -m pytest -n 2
 
 lint: $(VENV)/.installed
 	$(BIN)/ruff check src tests benchmarks docs
 	$(BIN)/ruff format --check src tests benchmarks docs
 	$(BIN)/mypy
+
+# Compiled once, beside the linters, and not by each process that runs tests.
+loops: $(VENV)/.installed
+	$(BIN)/python tests/compile_loops.py
 
 demo: $(VENV)/.installed
 	$(BIN)/acutance demo demo

@@ -1,4 +1,4 @@
-"""A private server of PostgreSQL for the tests of every room that needs one."""
+"""What tests of several rooms need: a private server of PostgreSQL, scenes that are fitted fast."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ import pwd
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -111,3 +112,23 @@ def postgres_server() -> Iterator[PostgresServer]:
 def postgres_url(postgres_server: PostgresServer) -> str:
     """An empty database."""
     return postgres_server.new_database("test")
+
+
+@pytest.fixture(scope="session")
+def few_forms() -> Callable[[], AbstractContextManager[None]]:
+    """``with few_forms():`` the sensor of a scene is one of two plain forms.
+
+    All steps of a scan are done, in two thirds of the time or less: of scenes whose edges, windows
+    or documents are asked, not how well the forms together describe their sensor.
+    """
+    from acutance.scan import first_sensor, sensor_fit
+    from acutance.targets.combine.sensor_forms import SCENE_FORMS
+
+    @contextmanager
+    def restricted() -> Iterator[None]:
+        with pytest.MonkeyPatch.context() as patched:
+            for module in (first_sensor, sensor_fit):
+                patched.setattr(module, "SCENE_FORMS", SCENE_FORMS[:2])
+            yield
+
+    return restricted

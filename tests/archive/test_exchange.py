@@ -288,13 +288,14 @@ def test_places_that_cannot_be_written(several, tmp_path):
 
 
 @pytest.fixture(scope="module")
-def scene():
+def scene(few_forms):
     """A scan of a small landscape."""
     sensor = ac.Sensor([ac.optics.Gaussian(0.4), ac.optics.Detector()])
     image, _ = ac.simulate.landscape(
         sensor, shape=(300, 300), snr=100, rng=np.random.default_rng(1)
     )
-    return ac.scan_scene(image, workers=1)
+    with few_forms():
+        return ac.scan_scene(image, workers=1)
 
 
 def test_scenes_are_kept(archive, scene):

@@ -368,13 +368,14 @@ def test_a_scene_with_few_edges_names_no_option_of_a_scan(tmp_path, run, rows):
     assert "error." not in reason
 
 
-def test_a_scene_is_kept_with_its_summary(tmp_path, run, rows):
+def test_a_scene_is_kept_with_its_summary(tmp_path, run, rows, few_forms):
     from acutance.simulate import landscape
 
     pixels, _ = landscape(SENSOR, shape=(300, 300), snr=100, rng=np.random.default_rng(1))
     path = tmp_path / "scene.tif"
     ac.raster.write_geotiff(path, pixels.astype(np.float32), gsd_m=0.5)
-    found = run(path, targets=survey(feature("scene", "scene", None, None)))
+    with few_forms():
+        found = run(path, targets=survey(feature("scene", "scene", None, None)))
     assert (found.measured, found.rejected) == (1, 0)
     measured, _ = rows()
     assert set(measured["kind"]) == {"scene"}
@@ -496,7 +497,7 @@ def test_an_image_that_cannot_be_read_is_one_row_also_with_scenes(tmp_path, run)
     assert (found.kept, found.rejected, len(found.unreadable)) == (1, 1, 1)
 
 
-def test_a_scene_is_the_same_over_several_processes(tmp_path, run):
+def test_a_scene_is_the_same_over_several_processes(tmp_path, run, few_forms):
     from acutance.simulate import landscape
 
     pixels, _ = landscape(SENSOR, shape=(300, 700), snr=100, rng=np.random.default_rng(1))
@@ -505,7 +506,8 @@ def test_a_scene_is_the_same_over_several_processes(tmp_path, run):
     scene = survey(feature("scene", "scene", None, None))
     records = []
     for workers in (1, 2):
-        found = run(path, targets=scene, workers=workers, archive=tmp_path / f"{workers}.db")
+        with few_forms():
+            found = run(path, targets=scene, workers=workers, archive=tmp_path / f"{workers}.db")
         assert found.measured == 1
         assert found.measuring_s > 0
         with Archive(tmp_path / f"{workers}.db") as archive:

@@ -43,9 +43,12 @@ def test_a_scene_is_measured_and_its_edges_are_written(acutance, scene, tmp_path
     assert sum(row["used"] == "1" for row in rows) == document["edges"]["used"]
 
 
-def test_edges_are_written_as_a_layer_and_may_be_long_ones_alone(acutance, scene, tmp_path):
+def test_edges_are_written_as_a_layer_and_may_be_long_ones_alone(
+    acutance, scene, tmp_path, few_forms
+):
     layer = tmp_path / "edges.geojson"
-    done = acutance("scan", scene, "--min-length", 25, "--workers", 1, "--edges", layer)
+    with few_forms():
+        done = acutance("scan", scene, "--min-length", 25, "--workers", 1, "--edges", layer)
     assert done.exit_code == 0, done.stderr
     assert "Edges of the scene" in done.stdout
     features = json.loads(layer.read_text())["features"]
@@ -62,8 +65,9 @@ def colours(scene):
     return path
 
 
-def test_a_softness_of_all_objects_is_stated(acutance, scene, keeps_to_schema):
-    done = acutance("scan", scene, "--json", "--workers", 1, "--target-softness-m", "0.2+-0.1")
+def test_a_softness_of_all_objects_is_stated(acutance, scene, keeps_to_schema, few_forms):
+    with few_forms():
+        done = acutance("scan", scene, "--json", "--workers", 1, "--target-softness-m", "0.2+-0.1")
     assert done.exit_code == 0, done.stderr
     document = json.loads(done.stdout)
     keeps_to_schema(document)
@@ -71,7 +75,7 @@ def test_a_softness_of_all_objects_is_stated(acutance, scene, keeps_to_schema):
     assert {row["term"] for row in document["budget"]} >= {"fit", "target_softness"}
 
 
-def test_several_bands_are_one_run(acutance, colours, tmp_path, shown, keeps_to_schema):
+def test_several_bands_are_one_run(acutance, colours, tmp_path, shown, keeps_to_schema, few_forms):
     done = acutance(
         "scan", colours, "--band", "all", "--workers", 1, "--keep", tmp_path / "scan.parts",
         "--edges", tmp_path / "edges.csv", "--figure", tmp_path / "scan.png", "--json",
@@ -92,10 +96,11 @@ def test_several_bands_are_one_run(acutance, colours, tmp_path, shown, keeps_to_
         "scan-band-1.png", "scan-band-2.png"
     ]  # fmt: skip
     # The windows are kept: text and page are a matter of seconds.
-    done = acutance(
-        "scan", colours, "--band", "1,2", "--workers", 1, "--keep", tmp_path / "scan.parts",
-        "--report", tmp_path / "scan.html",
-    )  # fmt: skip
+    with few_forms():
+        done = acutance(
+            "scan", colours, "--band", "1,2", "--workers", 1, "--keep", tmp_path / "scan.parts",
+            "--report", tmp_path / "scan.html",
+        )  # fmt: skip
     assert done.exit_code == 0, done.stderr
     assert "scene in 2 bands" in done.stdout
     assert "Shifts relative to band 1" in done.stdout
@@ -107,7 +112,7 @@ def test_several_bands_are_one_run(acutance, colours, tmp_path, shown, keeps_to_
     assert sum(b"Edges of the scene" in one and b"<image" in one for one in maps) == 2
 
 
-def test_edges_of_a_map_have_longitude_and_latitude(acutance, scene, tmp_path):
+def test_edges_of_a_map_have_longitude_and_latitude(acutance, scene, tmp_path, few_forms):
     parquet = pytest.importorskip("pyarrow.parquet")
     placed = tmp_path / "placed.tif"
     write_geotiff(
@@ -116,7 +121,8 @@ def test_edges_of_a_map_have_longitude_and_latitude(acutance, scene, tmp_path):
     )  # fmt: skip
     kept = ("--keep", tmp_path / "scan.parts", "--workers", 1)
     for ending in ("csv", "parquet"):
-        done = acutance("scan", placed, *kept, "--edges", tmp_path / f"edges.{ending}")
+        with few_forms():
+            done = acutance("scan", placed, *kept, "--edges", tmp_path / f"edges.{ending}")
         assert done.exit_code == 0, done.stderr
     rows = list(csv.DictReader((tmp_path / "edges.csv").read_text().splitlines()))
     table = parquet.read_table(tmp_path / "edges.parquet")
@@ -126,8 +132,9 @@ def test_edges_of_a_map_have_longitude_and_latitude(acutance, scene, tmp_path):
     assert [float(row["lat_deg"]) for row in rows] == pytest.approx(lat.tolist(), abs=1e-8)
 
 
-def test_a_page_is_of_the_scene(acutance, scene, tmp_path, shown):
-    done = acutance("scan", scene, "--workers", 1, "--report", tmp_path / "scan.html")
+def test_a_page_is_of_the_scene(acutance, scene, tmp_path, shown, few_forms):
+    with few_forms():
+        done = acutance("scan", scene, "--workers", 1, "--report", tmp_path / "scan.html")
     assert done.exit_code == 0, done.stderr
     ((name, result, _),) = [call for call in shown if call[0] == "page"]
     assert (name, result.kind) == ("page", "scene")

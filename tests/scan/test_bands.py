@@ -48,6 +48,12 @@ def two_bands(seed, size=400, density=120):
     ]
 
 
+@pytest.fixture
+def undrawn(monkeypatch):
+    """Pages without drawings: the command's tests draw those of bands."""
+    monkeypatch.setattr("acutance.report.html.figure_bytes", lambda figure, ending: b"")
+
+
 @pytest.fixture(scope="module")
 def bands():
     return two_bands(3)
@@ -58,8 +64,9 @@ def found(bands):
     return ac.scan_bands(bands)
 
 
-def test_one_band_is_a_scene(bands):
-    scene, several = ac.scan_scene(bands[0]), ac.scan_bands(bands[:1])
+def test_one_band_is_a_scene(bands, few_forms):
+    with few_forms():
+        scene, several = ac.scan_scene(bands[0]), ac.scan_bands(bands[:1])
     for name, column in scene.edges.columns().items():
         np.testing.assert_array_equal(column, several.scenes["1"].edges.columns()[name])
     assert several.scenes["1"].across.mtf_nyquist == scene.across.mtf_nyquist
@@ -81,8 +88,9 @@ def test_all_bands_have_the_same_edges(bands, found):
         assert abs(number.value - expected) < 3 * number.std
 
 
-def test_a_band_of_opposite_contrast_is_measured_and_placed_the_same(bands, found):
-    turned = ac.scan_bands([bands[0], 3000.0 - bands[1]])
+def test_a_band_of_opposite_contrast_is_measured_and_placed_the_same(bands, found, few_forms):
+    with few_forms():
+        turned = ac.scan_bands([bands[0], 3000.0 - bands[1]])
     first, other = (scene.edges for scene in turned.measurements)
     both = first.used & other.used
     turn = np.abs((first.normal_deg - other.normal_deg)[both] % 360 - 180)
@@ -164,11 +172,12 @@ def test_edges_of_one_direction_or_too_few_show_no_shift():
         band_shift(few, few)
 
 
-def test_a_band_that_shows_an_edge_less_has_no_part_in_it(bands):
+def test_a_band_that_shows_an_edge_less_has_no_part_in_it(bands, few_forms):
     """Half of the second band is empty: edges there are found in the first, and are unseen."""
     half = bands[1].copy()
     half[:, 200:] = 100.0 + np.random.default_rng(5).normal(0, NOISE, half[:, 200:].shape)
-    several = ac.scan_bands([bands[0], half])
+    with few_forms():
+        several = ac.scan_bands([bands[0], half])
     first, other = (scene.edges for scene in several.measurements)
     far = first.used & (first.col > 215)
     assert far.sum() > 10
@@ -196,12 +205,13 @@ def test_an_edge_of_one_band_alone_is_found_once_and_cut_where_another_has_it():
     assert any(isinstance(one, Unseen) for one in seen)
 
 
-def test_a_band_without_a_shift_has_the_reason_in_every_output(bands):
+def test_a_band_without_a_shift_has_the_reason_in_every_output(bands, few_forms, undrawn):
     """Each half of the scene is seen by one of the bands."""
     left, right = (band.copy() for band in bands)
     left[:, 200:] = 100.0 + np.random.default_rng(5).normal(0, NOISE, left[:, 200:].shape)
     right[:, :200] = 100.0 + np.random.default_rng(6).normal(0, NOISE, right[:, :200].shape)
-    several = ac.scan_bands([left, right])
+    with few_forms():
+        several = ac.scan_bands([left, right])
     assert several.shifts == {}
     (reason,) = several.unshifted
     assert reason.values == {"band": "2"}
@@ -212,9 +222,10 @@ def test_a_band_without_a_shift_has_the_reason_in_every_output(bands):
 
 
 @pytest.mark.parametrize("noise", [0.0, 1.0])
-def test_a_band_without_edges_is_rejected_and_the_others_stay(bands, noise):
+def test_a_band_without_edges_is_rejected_and_the_others_stay(bands, noise, few_forms, undrawn):
     empty = np.random.default_rng(1).normal(100, noise, bands[0].shape)
-    several = ac.scan_bands(np.array([bands[0], empty]))
+    with few_forms():
+        several = ac.scan_bands(np.array([bands[0], empty]))
     assert list(several.scenes) == ["1"]
     (rejected,) = several.rejected
     assert rejected.values == {"band": "2"}
@@ -253,7 +264,7 @@ def test_bands_that_do_not_go_together_are_refused(images, bands, message):
         ac.scan_bands(images, bands)
 
 
-def test_every_band_answers_what_is_required(found):
+def test_every_band_answers_what_is_required(found, undrawn):
     required = ["along.mtf_nyquist >= 0.9"]
     text, page = bands_text(found, required=required), bands_page(found, required=required)
     document = bands_document(found, required=required)

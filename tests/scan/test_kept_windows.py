@@ -31,6 +31,12 @@ if __name__ == "__main__":
 """
 
 
+@pytest.fixture(scope="module", autouse=True)
+def _of_few_forms(few_forms):
+    with few_forms():
+        yield
+
+
 @pytest.fixture(scope="module")
 def path(tmp_path_factory):
     """A scene of nine windows."""

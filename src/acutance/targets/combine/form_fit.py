@@ -108,6 +108,7 @@ class _Misfits:
         self.left, singular, _ = np.linalg.svd(ways, full_matrices=False)
         self.damping = 1 / np.sqrt(1 + singular**2) - 1
         self.near: _NearForms
+        self._some: dict[bytes, FormProducts] = {}
 
     def padded(self, parameters: Sequence[Floats]) -> Floats:
         """Parameters of every form, (f, p); 0 where it has fewer."""
@@ -115,6 +116,13 @@ class _Misfits:
         for own, p in zip(found, parameters, strict=True):
             own[: p.size] = p
         return found
+
+    def some(self, which: Places) -> FormProducts:
+        """Some of the sensors: most steps ask for those of the step before."""
+        name = which.tobytes()
+        if name not in self._some:
+            self._some[name] = self.products.some(which)
+        return self._some[name]
 
     def costs(self, x: Floats, which: Places) -> Floats:
         """Sums of squares of the residuals, the correction integrated out, and from the prior."""
@@ -189,7 +197,7 @@ class _NearForms:
 
     @cached_property
     def products(self) -> FormProducts:
-        return self.misfits.products.some(self.which)
+        return self.misfits.some(self.which)
 
     @cached_property
     def factors(self) -> NDArray[np.complex128]:
@@ -218,6 +226,8 @@ class _NearForms:
 
     def some(self, kept: Places) -> _NearForms:
         """Those at places (k,) among them; what is known of them is not worked out again."""
+        if kept.size == self.which.size:
+            return self
         found = _NearForms(self.misfits, self.x[kept], self.which[kept])
         vars(found).update(factors=self.factors[:, kept], curves=self.curves.some(kept))
         return found

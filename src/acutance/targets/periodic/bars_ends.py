@@ -13,11 +13,12 @@ from scipy.ndimage import map_coordinates
 
 from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
-from acutance.curves.otf2d import OtfModel
 from acutance.geometry.bar_group import Bars
-from acutance.numerics.otf_modes import Complexes
+from acutance.numerics.otf_modes import Complexes, MeanOtf, ProcessModes
+from acutance.targets.periodic.bars_pixels import GroupPixels
+from acutance.targets.periodic.otf_model import FittedOtf, all_modes, mode_count
 
-__all__ = ["OtfTable", "end_effect", "light_of_neighbours"]
+__all__ = ["TableModes", "scattered_light"]
 
 _ACROSS_CPP: Final = 1.0
 _ALONG_CPP: Final = 1.2
@@ -29,7 +30,7 @@ _TABLE_SIZE: Final = 88
 
 
 @dataclass(frozen=True, eq=False)
-class OtfTable:
+class _OtfTable:
     """An OTF on a square grid of frequencies, looked up between its points.
 
     Attributes
@@ -40,16 +41,6 @@ class OtfTable:
 
     table: Complexes
 
-    @classmethod
-    def of(cls, model: OtfModel) -> OtfTable:
-        """Tabulate a model: half of all frequencies, the rest is its conjugate."""
-        n = _TABLE_SIZE
-        freq: Floats = np.asarray(_TABLE_CPP * np.arange(-n, n + 1))
-        half = freq[n:]
-        u, v = np.tile(freq, half.size), np.repeat(half, freq.size)
-        lower = model.otf(u, v).reshape(half.size, freq.size)
-        return cls(np.vstack([np.conj(lower[:0:-1, ::-1]), lower]))
-
     def __call__(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """OTF at frequencies across and along, same shape."""
         places = [v_cpp / _TABLE_CPP + _TABLE_SIZE, u_cpp / _TABLE_CPP + _TABLE_SIZE]
@@ -59,7 +50,50 @@ class OtfTable:
         return np.asarray(parts[0] + 1j * parts[1])
 
 
-def end_effect(otf: OtfTable, bars: Bars, across_px: Floats, along_px: Floats) -> Floats:
+@dataclass(frozen=True, eq=False)
+class TableModes:
+    """All modes about a mean, at the frequencies of a table.
+
+    A fit changes their coefficients from pass to pass; to work them out takes longer than the rest
+    of a pass.
+
+    Attributes
+    ----------
+    modes : ((n + 1) (2 n + 1), m) array
+        At the frequencies v from zero upwards, all u of each: the rest is their conjugate.
+    """
+
+    modes: Complexes
+
+    @classmethod
+    def of(cls, mean: MeanOtf, states: ProcessModes) -> TableModes:
+        """The modes of a mean and its states."""
+        n = _TABLE_SIZE
+        freq: Floats = np.asarray(_TABLE_CPP * np.arange(-n, n + 1))
+        u, v = np.tile(freq, n + 1), np.repeat(freq[n:], freq.size)
+        return cls(all_modes(mean, mode_count(states), u, v))
+
+    def table(self, otf: FittedOtf) -> _OtfTable:
+        """A fitted sum of them, tabulated."""
+        lower = otf.of_modes(self.modes).reshape(_TABLE_SIZE + 1, -1)
+        return _OtfTable(np.vstack([np.conj(lower[:0:-1, ::-1]), lower]))
+
+
+def scattered_light(
+    modes: TableModes, otf: FittedOtf, pixels: Sequence[GroupPixels]
+) -> list[Floats]:
+    """Effect of the bars' ends and light of other groups at every group's pixels, contrast 1."""
+    table = modes.table(otf)
+    others = _light_of_neighbours(
+        table, [one.bars for one in pixels], [(one.rows, one.cols) for one in pixels]
+    )
+    return [
+        _end_effect(table, one.bars, one.across, one.along) + other
+        for one, other in zip(pixels, others, strict=True)
+    ]
+
+
+def _end_effect(otf: _OtfTable, bars: Bars, across_px: Floats, along_px: Floats) -> Floats:
     """Image of bars of their length minus that of endless ones, for unit contrast, (n,).
 
     ``sum over g of L sinc(L g) exp(2 pi i g t) [H(f, g) - H(f, 0)]``, through the profile's
@@ -86,8 +120,8 @@ def end_effect(otf: OtfTable, bars: Bars, across_px: Floats, along_px: Floats) -
     return np.asarray(map_coordinates(image.real, places, order=3, mode="nearest"))
 
 
-def light_of_neighbours(
-    otf: OtfTable,
+def _light_of_neighbours(
+    otf: _OtfTable,
     groups: Sequence[Bars],
     places: Sequence[tuple[NDArray[np.intp], NDArray[np.intp]]],
 ) -> list[Floats]:

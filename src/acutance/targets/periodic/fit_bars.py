@@ -26,7 +26,7 @@ from acutance.numerics.combined_prior import CombinedPrior
 from acutance.numerics.marginal_likelihood import Posterior
 from acutance.numerics.noise import Correlation, correlation
 from acutance.numerics.otf_modes import MeanOtf, ProcessModes
-from acutance.targets.periodic.bars_ends import OtfTable, end_effect, light_of_neighbours
+from acutance.targets.periodic.bars_ends import TableModes, scattered_light
 from acutance.targets.periodic.bars_pixels import GroupPixels, group_columns
 from acutance.targets.periodic.curvature import find_curvature
 from acutance.targets.periodic.otf_model import FittedOtf, level_row, mode_count
@@ -183,6 +183,7 @@ def _fit_otf(
     likelihood, and the weights and the correlation of the noise from what it leaves.
     """
     states = ProcessModes(mean.width_px)
+    table_modes = TableModes.of(mean, states)
     # By group and pixel: a group that moves takes in other pixels, and groups may share some.
     weights = np.ones((len(groups), *image.shape))
     all_scattered = np.zeros_like(weights)
@@ -200,7 +201,7 @@ def _fit_otf(
         standard = fitted.residual / fitted.noise
         again = reweighted(standard) if robust else weight
         noise_found = _correlation(standard, pixels)
-        found = _scattered(fitted.otf, pixels)
+        found = scattered_light(table_modes, fitted.otf, pixels)
         change = max(float(np.max(np.abs(a - b))) for a, b in zip(found, scattered, strict=True))
         if (
             _longest_update(fitted, pixels) < _SETTLED_PX
@@ -373,18 +374,6 @@ def _correlation(standard: Floats, pixels: tuple[GroupPixels, ...]) -> Correlati
     rows = np.concatenate([one.rows for one in pixels])
     cols = np.concatenate([one.cols for one in pixels])
     return correlation(np.clip(standard, -4, 4), rows, cols)
-
-
-def _scattered(otf: FittedOtf, pixels: tuple[GroupPixels, ...]) -> list[Floats]:
-    """Effect of the bars' ends and light of other groups at every group's pixels, contrast 1."""
-    table = OtfTable.of(otf)
-    others = light_of_neighbours(
-        table, [one.bars for one in pixels], [(one.rows, one.cols) for one in pixels]
-    )
-    return [
-        end_effect(table, one.bars, one.across, one.along) + other
-        for one, other in zip(pixels, others, strict=True)
-    ]
 
 
 def _require_near(stated: tuple[Bars, ...], found: tuple[Bars, ...]) -> None:

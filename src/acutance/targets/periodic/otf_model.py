@@ -57,12 +57,16 @@ class FittedOtf:
 
     def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """OTF, (n,)."""
-        return np.asarray(self._modes(u_cpp, v_cpp) @ self.beta / self.level)
+        return self.of_modes(self._modes(u_cpp, v_cpp))
+
+    def of_modes(self, modes: Complexes) -> Complexes:
+        """OTF where all modes are known, (n, m), (n,)."""
+        return np.asarray(modes @ self.beta / self.level)
 
     def factor(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """Factor of its covariance, (n, k)."""
         modes = self._modes(u_cpp, v_cpp)
-        otf = modes @ self.beta / self.level
+        otf = self.of_modes(modes)
         # The level is the OTF at zero frequency, where it is 1 without error.
         fitted = (modes - np.outer(otf, self._at_zero)) @ self.beta_factor / self.level
         if self.shape_error is None:

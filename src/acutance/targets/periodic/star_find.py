@@ -19,6 +19,7 @@ from acutance.errors import NoStarError
 from acutance.geometry.star_geometry import Flags, SiemensStar
 from acutance.targets.periodic.star_extent import extent_of
 from acutance.targets.periodic.star_rings import members_of, rings_of
+from acutance.targets.periodic.star_strength import PixelsAbout
 from acutance.targets.periodic.tuned import MIN_STAR_STRENGTH
 
 __all__ = ["find_star"]
@@ -151,11 +152,11 @@ def _strengths(
 ) -> dict[int, float]:
     """How much of the rings each number of cycles explains, in parts of so many turns."""
     counts = set(range(4, 201)) if cycles is None else {cycles, *range(4, 201)}
-    found = {}
+    pixels, found = PixelsAbout.of(smooth, usable, *centre), {}
     for n in sorted(counts):
         first = n / (2 * math.pi * _COARSE_CPP)
         if first < 0.85 * farthest:
-            found[n] = _strength(smooth, usable, centre, n, first, farthest, turns)
+            found[n] = pixels.strength(n, first, farthest, turns)
     return found
 
 
@@ -190,8 +191,8 @@ def _require_count(
     best, strength = start, own
     for n in sorted(others):
         star = _settled(smooth, lively, replace(start, cycles=n))
-        first, centre = star.radius_at(_COARSE_CPP), (star.row, star.col)
-        found = _strength(smooth, lively, centre, n, first, start.rim_px, 1.0)
+        about = PixelsAbout.of(smooth, lively, star.row, star.col)
+        found = about.strength(n, star.radius_at(_COARSE_CPP), start.rim_px, 1.0)
         if found > strength:
             best, strength = star, found
     is_alike = strength < 1.5 * own and 1 - strength > 0.5 * (1 - own)
@@ -207,37 +208,6 @@ def _require_count(
 def _farthest(usable: Flags, row: float, col: float) -> float:
     rows, cols = np.nonzero(usable)
     return float(np.quantile(np.hypot(rows - row, cols - col), 0.98))
-
-
-def _strength(
-    smooth: Floats,
-    usable: Flags,
-    centre: tuple[float, float],
-    n: int,
-    first: float,
-    last: float,
-    turns: float,
-) -> float:
-    """Share of the rings' variance that n cycles explain, by least squares."""
-    explained, power = 0.0, 0.0
-    rings = rings_of(smooth, usable, *centre, first, last)
-    parts = round(1 / turns)
-    for _, angle, value in rings[:: max(len(rings) // 12, 1)]:
-        total = (value - np.mean(value)) ** 2
-        power += float(np.mean(total))
-        part = ((angle + math.pi) / (2 * math.pi) * parts).astype(np.intp) % parts
-        for own in members_of(part, np.ones(angle.size, bool), parts):
-            if own.size < 9:
-                continue
-            turned = n * angle[own]
-            design = np.stack([np.ones(own.size), np.cos(turned), np.sin(turned)], axis=1)
-            gram = design.T @ design + 1e-9 * own.size * np.eye(3)
-            fit = np.linalg.solve(gram, design.T @ value[own])
-            wave = design[:, 1:] @ fit[1:]
-            rest = value[own] - design @ fit
-            seen = float(np.sum((wave - np.mean(wave)) ** 2))
-            explained += max(seen - float(np.sum(rest**2)) * 2 / own.size, 0.0) / angle.size
-    return min(explained / max(power, 1e-300), 1.0)
 
 
 def _agreed(smooth: Floats, usable: Flags, star: SiemensStar) -> SiemensStar:

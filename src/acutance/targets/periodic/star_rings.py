@@ -11,9 +11,17 @@ from acutance.curves.grid import Floats
 from acutance.geometry.star_geometry import Flags, SiemensStar
 from acutance.numerics.shape_error import ShapeError
 
-__all__ = ["members_of", "ring_modulations", "rings_of", "shape_error"]
+__all__ = [
+    "MIN_RING_PIXELS",
+    "RING_STEP_PX",
+    "members_of",
+    "ring_modulations",
+    "rings_of",
+    "shape_error",
+]
 
-_RING_STEP_PX = 1.0
+RING_STEP_PX = 1.0
+MIN_RING_PIXELS = 12
 _CHANCE = 1.5
 """Deviations by which the residuals' spokes have to exceed what noise makes."""
 _ALONG_AXES = 2.0
@@ -33,14 +41,14 @@ def rings_of(
     radius = np.hypot(rows - row, cols - col)
     angle = np.arctan2(rows - row, cols - col)
     value = smooth[usable]
-    ring = np.floor((radius - first) / _RING_STEP_PX).astype(np.intp)
+    ring = np.floor((radius - first) / RING_STEP_PX).astype(np.intp)
     order = np.argsort(ring, kind="stable")
     ring, radius, angle, value = ring[order], radius[order], angle[order], value[order]
     found = []
-    for number in range(max(int((last - first) / _RING_STEP_PX), 0)):
+    for number in range(max(int((last - first) / RING_STEP_PX), 0)):
         start, stop = np.searchsorted(ring, [number, number + 1]).tolist()
         here = slice(start, stop)
-        if stop - start >= 12:
+        if stop - start >= MIN_RING_PIXELS:
             found.append((float(np.mean(radius[here])), angle[here], value[here]))
     return found
 
@@ -67,7 +75,7 @@ def ring_modulations(
     found = []
     for low in np.arange(inner_px, outer_px - 0.5, 1.0):
         here = kept & (radius >= low) & (radius < low + 1)
-        if np.count_nonzero(here) < 12:
+        if np.count_nonzero(here) < MIN_RING_PIXELS:
             continue
         phase = star.cycles * angle[here] + star.alpha_rad
         design = np.stack([np.ones(phase.size), np.cos(phase), np.sin(phase)], axis=1)
