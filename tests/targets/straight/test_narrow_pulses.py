@@ -48,3 +48,19 @@ def test_of_two_pixels_the_width_may_be_free():
     assert abs(measured.mtf_nyquist.value - truth.response.mtf_nyquist.value) < (
         3 * measured.mtf_nyquist.std
     )
+
+
+@pytest.mark.parametrize("name", sorted(SENSORS))
+def test_a_true_width_that_is_held_is_seldom_contradicted_and_a_wrong_one_is(name):
+    """Free widths of such pulses scatter by a quarter of a pixel, whatever they state."""
+    for seed in range(4):
+        image, _ = narrow(name, seed)
+        held = ac.measure_pulse(image, width_px=1.0, fit_width=False)
+        assert check_of(held, "width_sigmas").passed
+    image, _ = narrow(name, 1)
+    try:
+        wrong = ac.measure_pulse(image, width_px=2.4, fit_width=False)
+    except ac.NoEdgeError as refused:
+        assert "check the width" in str(refused)
+    else:
+        assert not check_of(wrong, "width_sigmas").passed
