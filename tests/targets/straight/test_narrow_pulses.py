@@ -19,6 +19,16 @@ def check_of(measured, name="width_px"):
     return next(one for one in measured.checks if one.name == name)
 
 
+def warning_of(image, width_px):
+    """What is said of a held width: an error, a check that failed, or nothing."""
+    try:
+        held = ac.measure_pulse(image, width_px=width_px, fit_width=False)
+    except ac.NoEdgeError as refused:
+        return str(refused)
+    check = check_of(held, "width_sigmas")
+    return "" if check.passed else check.message
+
+
 @pytest.mark.parametrize("name", ["gaussian", "halo", "defocused"])
 def test_a_narrow_pulse_of_free_width_is_doubtful(name):
     image, _ = narrow(name, 1)
@@ -57,10 +67,4 @@ def test_a_true_width_that_is_held_is_seldom_contradicted_and_a_wrong_one_is(nam
         image, _ = narrow(name, seed)
         held = ac.measure_pulse(image, width_px=1.0, fit_width=False)
         assert check_of(held, "width_sigmas").passed
-    image, _ = narrow(name, 1)
-    try:
-        wrong = ac.measure_pulse(image, width_px=2.4, fit_width=False)
-    except ac.NoEdgeError as refused:
-        assert "check the width" in str(refused)
-    else:
-        assert not check_of(wrong, "width_sigmas").passed
+    assert "width" in warning_of(narrow(name, 1)[0], 2.4)
