@@ -208,8 +208,9 @@ _POINTS = {
     ),
     "phase_gap_px": Question(
         "How large is the gap in the sub-pixel phases?", "<=", 0.25,
-        "fine structure is not determined and the intervals are wider; steps of 0.2 by 0.25 px "
-        "leave 0.16", "QuickBird report 5.7.2", "note",
+        "fine structure is not determined and the intervals are wider, and need not hold where all "
+        "sources have about one phase; steps of 0.2 by 0.25 px leave 0.16",
+        "QuickBird report 5.7.2", "note", caution=0.66,
     ),
     "full_scale": Question(
         "Where in the detector's range is the brightest pixel?", "<=", 0.9,
