@@ -19,6 +19,7 @@ from acutance.archive.trends.documents import posterior_document, read_posterior
 from acutance.archive.trends.images import ImageMeans
 from acutance.archive.trends.normal_mixture import NormalMixture
 from acutance.archive.trends.posterior import TrendPosterior
+from acutance.archive.trends.relative import is_told_from_zero
 from acutance.archive.trends.scatter import with_scatter
 from acutance.archive.trends.series import date_of, decimal_year
 from acutance.archive.trends.words import trend_text
@@ -129,12 +130,7 @@ class Trend(ShortRepr):
     @cached_property
     def rate(self) -> NormalMixture:
         """The posterior of the drift per year at the end of the series."""
-        row = np.zeros(self.posterior.mode.shape[1])
-        slopes = self.posterior.design.slopes(float(self.images.when[-1]))
-        row[: slopes.size] = slopes
-        rows = np.broadcast_to(row, (self._drifting.share.size, 1, row.size))
-        mean, std = self._drifting.of(rows)
-        return NormalMixture(self._drifting.share, mean[:, 0], std[:, 0])
+        return self._drifting.rate(float(self.images.when[-1]))
 
     @cached_property
     def rate_per_year(self) -> Estimate:
@@ -143,8 +139,20 @@ class Trend(ShortRepr):
 
     @cached_property
     def relative_rate_per_year(self) -> Estimate:
-        """Drift per year over the level."""
-        return self.rate.times(1 / (self.level.value or 1.0)).estimate()
+        """Drift per year over the level; ``nan`` where that may be 0."""
+        if not self.has_scale:
+            return Estimate(np.nan, np.nan)
+        return self.rate.times(1 / self.level.value).estimate()
+
+    @cached_property
+    def relative_scatter(self) -> float:
+        """Scatter between images over the level; ``nan`` where that may be 0."""
+        return self.scatter.value / abs(self.level.value) if self.has_scale else np.nan
+
+    @cached_property
+    def has_scale(self) -> bool:
+        """Whether the level is told from 0, of which changes have no per cent."""
+        return is_told_from_zero(self.mean(float(self.images.when[-1]), season=False))
 
     @cached_property
     def step_probability(self) -> float:
@@ -165,6 +173,13 @@ class Trend(ShortRepr):
     def events(self) -> tuple[EventEffect, ...]:
         """What changed at the stated events."""
         return event_effects(self._drifting)
+
+    @property
+    def drift_event(self) -> EventEffect | None:
+        """The last event since which the drift is another one; ``None`` without such."""
+        within = (one for one in self.events if self.first < one.date <= self.last)
+        own = [one for one in within if one.drift_change_per_year is not None]
+        return own[-1] if own else None
 
     @cached_property
     def season_probability(self) -> float:
