@@ -23,8 +23,9 @@ from acutance.archive.trends.relative import is_told_from_zero
 from acutance.archive.trends.scatter import with_scatter
 from acutance.archive.trends.series import date_of, decimal_year
 from acutance.archive.trends.words import trend_text
-from acutance.curves import METRICS, Estimate
+from acutance.curves import Estimate
 from acutance.curves.grid import Floats
+from acutance.curves.metric_bounds import limit_fault, lowest_of
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 from acutance.targets.document_fields import require_document
@@ -261,6 +262,8 @@ class Trend(ShortRepr):
                 f"the limit is {limit:g} and the time {within_years:g} years: give a number, and "
                 "a time above 0"
             )
+        if fault := limit_fault(self.metric, limit):
+            raise OptionError(f"the limit {limit:g} of {self.metric} is never passed: {fault}")
         falls = not self.metric.startswith(_LESS_IS_SHARPER) if is_minimum is None else is_minimum
         return find_crossing(
             self._drifting, self.images.systematic_std, float(self.images.when[-1]), limit,
@@ -286,6 +289,11 @@ class Trend(ShortRepr):
                                  *self._scales(self.images.typical_std))  # fmt: skip
         images = [mixture_quantiles(scattered.share, scattered.mean, scattered.std, level)
                   for level in levels[-2:]]  # fmt: skip
+        lowest = lowest_of(self.metric)
+        if lowest is not None:
+            # As the intervals of the level: no part of a band lies where no value can be.
+            middle, *ends = (np.maximum(lowest, one) for one in (middle, *ends))
+            images = [np.maximum(lowest, one) for one in images]
         return TrendBands(years, middle, (ends[0], ends[1]), (ends[2], ends[3]),
                           (images[0], images[1]))  # fmt: skip
 
@@ -295,7 +303,7 @@ class Trend(ShortRepr):
         return np.hypot(scatter, std), self._drifting.degrees
 
     def _estimate(self, density: NormalMixture) -> Estimate:
-        return density.estimate(0.0 if self.metric in METRICS else None)
+        return density.estimate(lowest_of(self.metric))
 
     def summary(self) -> str:
         """What the trend is, in a few sentences."""
