@@ -263,10 +263,18 @@ def _require_valid(target: SurveyedTarget, acquired: date | None) -> None:
     if not begin <= acquired <= end:
         raise NotHereError(
             "not there then",
-            f"the image is of {acquired}, and the target is there from {target.valid_from or '-'} "
-            f"to {target.valid_to or '-'}",
+            f"the image is of {acquired}, and the target is there {_times_of(target)}",
             "date",
         )
+
+
+def _times_of(target: SurveyedTarget) -> str:
+    """When a target is there: from a day on, until another, or between both."""
+    if target.valid_to is None:
+        return f"from {target.valid_from} on"
+    if target.valid_from is None:
+        return f"until {target.valid_to}"
+    return f"from {target.valid_from} to {target.valid_to}"
 
 
 def _placed(target: SurveyedTarget, image: Image, opened: _Opened) -> PlacedTarget:

@@ -229,7 +229,7 @@ def _text(found: BatchSummary) -> str:
         _counts("measured", found.measured, found.verdicts),
         _counts("rejected", found.rejected, found.reasons),
         *_named(f"unreadable: {_fault(*one)}" for one in found.faults.items()),
-        *_named(f"measured once: {path} has the content of {other}"
+        *_named(f"measured once: {path} and {other} have the same content"
                 for path, other in found.copies.items()),
     ]  # fmt: skip
     if found.rejected:
