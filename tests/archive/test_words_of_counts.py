@@ -33,16 +33,15 @@ def test_a_correction_counts_measurements_and_rejections(tmp_path: Path, entry_o
     assert found.summary.endswith("(1 measurement, 1 rejection)")
 
 
-def test_an_average_of_one_target_is_left_out(tmp_path: Path, entry_of: Any) -> None:
+def test_an_average_of_one_target_is_left_out(
+    tmp_path: Path, entry_of: Any, bars_record: ac.Record
+) -> None:
     """Targets seen in one direction alone: its average repeated its only row."""
     with Archive(tmp_path / "a.db") as made:
-        along = entry_of(1)
-        document = along.record.document
-        turned = {**document, "along": document["across"], "angle_deg": 96.0}
-        del turned["across"]
-        made.add_entries([entry_of(0), replace(along, record=ac.Record(turned))])
-        own = made.table(("target",), ("rer",)).of_direction("across")
-    assert not [row for row in own.rows if row.is_average]
+        made.add_entries([entry_of(0), entry_of(1, record=bars_record)])
+        table = made.table(("target",), ("rer",))
+    assert [row.is_average for row in table.of_direction("along").rows] == [False]
+    assert [row.is_average for row in table.of_direction("across").rows] == [False, False, True]
 
 
 def test_a_catalogue_leaves_out_images_without_a_date(tmp_path: Path, entry_of: Any) -> None:

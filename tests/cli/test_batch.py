@@ -129,7 +129,7 @@ def test_a_misspelt_image_is_told_with_the_nearest_name(acutance, given, tmp_pat
     done = acutance(*given, wrong)
     told = f"unreadable: {wrong} does not exist (its folder exists): is {edge_image} meant?"
     assert told in done.stdout
-    assert "rejected 1: 1 no such file" in done.stdout
+    assert "rejected 1: 1 missing file" in done.stdout
     document = json.loads(acutance(*given, wrong, "--json").stdout)
     assert document["reasons"] == {"no such file": 1}
     assert document["missing"] == [str(wrong)]

@@ -12,6 +12,7 @@ from acutance.cli import (
     archive_check,
     archive_compare,
     archive_correct,
+    archive_remove,
     archive_report,
     archive_table,
     archive_trend,
@@ -255,6 +256,7 @@ def export(
 
 app.command("trend", epilog=archive_trend.EXAMPLE)(archive_trend.trend)
 app.command("correct", epilog=archive_correct.EXAMPLE)(archive_correct.correct)
+app.command("remove", epilog=archive_remove.EXAMPLE)(archive_remove.remove)
 app.command("check", epilog=archive_check.EXAMPLE)(archive_check.check)
 app.command("compare", epilog=archive_compare.EXAMPLE)(archive_compare.compare)
 app.command("table", epilog=archive_table.EXAMPLE)(archive_table.table)
