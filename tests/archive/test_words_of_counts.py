@@ -39,7 +39,7 @@ def test_an_average_of_one_target_is_left_out(
     """Targets seen in one direction alone: its average repeated its only row."""
     with Archive(tmp_path / "a.db") as made:
         made.add_entries([entry_of(0), entry_of(1, record=bars_record)])
-        table = made.table(("target",), ("rer",))
+        table = made.table(("target",), ("rer",), verdict="invalid")
     assert [row.is_average for row in table.of_direction("along").rows] == [False]
     assert [row.is_average for row in table.of_direction("across").rows] == [False, False, True]
 
