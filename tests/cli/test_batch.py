@@ -129,7 +129,7 @@ def test_a_misspelt_image_is_told_with_the_nearest_name(acutance, given, tmp_pat
     done = acutance(*given, wrong)
     told = f"unreadable: {wrong} does not exist (its folder exists): is {edge_image} meant?"
     assert told in done.stdout
-    assert "rejected 1: 1 no such file" in done.stdout
+    assert "rejected 1: 1 missing file" in done.stdout
     document = json.loads(acutance(*given, wrong, "--json").stdout)
     assert document["reasons"] == {"no such file": 1}
     assert document["missing"] == [str(wrong)]
@@ -142,7 +142,7 @@ def test_a_copy_is_measured_once_and_told(acutance, given, tmp_path, edge_image)
     copy.write_bytes(Path(edge_image).read_bytes())
     done = acutance(*given, copy)
     assert "2 images: 1 row added" in done.stdout
-    assert f"measured once: {copy} has the content of {edge_image}" in done.stdout
+    assert f"measured once: {copy} and {edge_image} have the same content" in done.stdout
 
 
 def test_unreadable_images_are_named(acutance, given, tmp_path):

@@ -40,5 +40,5 @@ def test_mirrors_too_large_for_a_field_are_told():
 
 def test_a_single_mirror_stands_in_one_column():
     plan = plan_mirrors(MirrorPlanOptions(SENSOR, count=1, draws=0))
-    assert "1 mirrors in 1 columns" in mirror_plan_text(plan)
+    assert "1 mirror in 1 column\n  largest gap" in mirror_plan_text(plan)
     assert len(plan.layout.places_px) == 1

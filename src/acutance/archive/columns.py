@@ -47,6 +47,8 @@ class Columns(ShortRepr):
 
     columns: Mapping[str, NDArray[Any]]
     shown: ClassVar[tuple[str, ...]] = ()
+    whole: ClassVar[tuple[str, ...]] = ()
+    """Whole numbers that are not always known: arrays have them as floats, for NaN."""
 
     def __len__(self) -> int:
         return len(next(iter(self.columns.values()), ()))
@@ -71,6 +73,8 @@ class Columns(ShortRepr):
     def rows(self) -> Iterator[dict[str, Any]]:
         """Row by row as Python's own types; ``None`` where nothing is known."""
         listed = {name: _plain(column) for name, column in self.columns.items()}
+        for name in set(self.whole) & set(listed):
+            listed[name] = [None if value is None else int(value) for value in listed[name]]
         for values in zip(*listed.values(), strict=True):
             yield dict(zip(listed, values, strict=True))
 

@@ -148,7 +148,7 @@ class CorrectedImage:
         Its path, else its SHA-256.
     changes : dict of str to (before, after)
         By column; only what differs.
-    measurements : int
+    measurements, rejections : int
         Of the image.
     other_gsd : int
         Directions of them with numbers in metres by another GSD than the corrected one: they stay
@@ -160,6 +160,7 @@ class CorrectedImage:
     changes: Mapping[str, tuple[Any, Any]]
     measurements: int
     other_gsd: int
+    rejections: int = 0
 
     @property
     def summary(self) -> str:
@@ -168,7 +169,13 @@ class CorrectedImage:
             f"{name} {_word(before)} → {_word(after)}"
             for name, (before, after) in self.changes.items()
         )
-        return f"{self.image}: {listed} ({counted(self.measurements, 'measurement')})"
+        return f"{self.image}: {listed} ({', '.join(self._rows)})"
+
+    @property
+    def _rows(self) -> list[str]:
+        """Measurements and rejections with their numbers; those that there are none of left out."""
+        each = (("measurement", self.measurements), ("rejection", self.rejections))
+        return [counted(count, name) for name, count in each if count]
 
     def to_dict(self) -> dict[str, Any]:
         """All fields for JSON."""
@@ -243,7 +250,7 @@ def _correct(
     return [
         CorrectedImage(
             row["id"], row["path"] or row["content"] or f"image {row['id']}", changes,
-            counts[row["id"]], other_gsd[row["id"]],
+            counts[row["id"], True], other_gsd[row["id"]], counts[row["id"], False],
         )
         for row, changes, _ in changed
     ]  # fmt: skip
@@ -268,14 +275,14 @@ def _chunks(items: Sequence[Any]) -> Iterator[Sequence[Any]]:
         yield items[first : first + _CHUNK]
 
 
-def _counts(connection: Connection, ids: Sequence[int]) -> Counter[int]:
-    """Measurements and rejections, by image."""
-    found: Counter[int] = Counter()
+def _counts(connection: Connection, ids: Sequence[int]) -> Counter[tuple[int, bool]]:
+    """Rows by image, and by whether they are measurements; others are rejections."""
+    found: Counter[tuple[int, bool]] = Counter()
     for some in _chunks(ids):
-        own = measurements.c.image_id
-        asked = select(own, func.count()).where(own.in_(some)).group_by(own)
-        for number, count in connection.execute(asked):
-            found[number] = count
+        own, verdict = measurements.c.image_id, measurements.c.verdict
+        asked = select(own, verdict, func.count()).where(own.in_(some)).group_by(own, verdict)
+        for number, word, count in connection.execute(asked):
+            found[number, word is not None] += count
     return found
 
 

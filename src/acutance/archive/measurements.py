@@ -58,6 +58,7 @@ class Measurements(Columns):
     """
 
     load: Load = field(repr=False, compare=False)
+    whole = ("run",)
     shown: ClassVar[tuple[str, ...]] = (
         "id", "sensor", "band", "target", "kind", "method", "orientation", "acquired", "verdict",
         "mtf_nyquist", "mtf_nyquist_std", "rer", "rer_std", "fwhm_px", "fwhm_px_std",
@@ -96,6 +97,7 @@ class Measurements(Columns):
 class Rejections(Columns):
     """What was not measured as columns: where, at which stage, and why, oldest first."""
 
+    whole = ("run",)
     shown: ClassVar[tuple[str, ...]] = (
         "id", "sensor", "band", "target", "kind", "acquired", "image", "stage", "reason",
     )  # fmt: skip

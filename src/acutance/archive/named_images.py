@@ -22,7 +22,9 @@ ImageKey = str | int
 _MAX_LISTED = 10
 
 
-def named_images(connection: Connection, names: Iterable[str]) -> dict[str, list[ImageKey]]:
+def named_images(
+    connection: Connection, names: Iterable[str], done: str = "corrected"
+) -> dict[str, list[ImageKey]]:
     """The images of every name.
 
     Parameters
@@ -31,6 +33,8 @@ def named_images(connection: Connection, names: Iterable[str]) -> dict[str, list
     names : iterable of str
         In a pattern ``*``, ``?`` and ``[...]``. One with a slash is of whole paths, and ``*`` is
         any number of folders there; any other is of file names.
+    done : str, optional
+        What is not done where a name is wrong.
 
     Raises
     ------
@@ -56,7 +60,7 @@ def named_images(connection: Connection, names: Iterable[str]) -> dict[str, list
     if faults:
         more = len(faults) - _MAX_LISTED
         listed = "; ".join(faults[:_MAX_LISTED]) + (f"; and {more} more" if more > 0 else "")
-        raise OptionError(f"nothing is corrected: {listed}")
+        raise OptionError(f"nothing is {done}: {listed}")
     return found
 
 

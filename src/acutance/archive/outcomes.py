@@ -28,11 +28,14 @@ class Outcome(NamedTuple):
         None for a rejection.
     why : str or None
         Of a rejection: in a word or two, else its stage.
+    reason : str or None
+        The same in full.
     """
 
     content: str | None
     verdict: str | None
     why: str | None
+    reason: str | None
 
 
 def kept_outcomes(database: Database, contents: Iterable[str]) -> dict[str, Outcome]:
@@ -57,14 +60,17 @@ def kept_outcomes(database: Database, contents: Iterable[str]) -> dict[str, Outc
         measurements.c.verdict,
         measurements.c.stage,
         measurements.c.rejected_values,
+        measurements.c.reason,
     )
     for first in range(0, len(wanted), _MANY):
         some = wanted[first : first + _MANY]
         asked = select(*columns).join(images).where(images.c.content.in_(some))
-        for key, content, verdict, stage, values in database.read(partial(_rows, asked=asked)):
+        for key, content, verdict, stage, values, reason in database.read(
+            partial(_rows, asked=asked)
+        ):
             word = None if verdict is None else VERDICTS[verdict]
             why = None if word is not None else str((values or {}).get("why") or stage)
-            found[key] = Outcome(content, word, why)
+            found[key] = Outcome(content, word, why, reason)
     return found
 
 

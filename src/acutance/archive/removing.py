@@ -1,17 +1,18 @@
-"""Rejections that hold no longer are removed, as of a file that was missing."""
+"""What holds no longer is removed: rejections, and images whose file has other content now."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from typing import Any, Final
 
 from sqlalchemy import Connection, Row, delete, select
 
 from acutance.archive.connection import Database
+from acutance.archive.named_images import ImageKey, named_images
 from acutance.archive.tables import images, measurements
 
-__all__ = ["remove_rejections"]
+__all__ = ["earlier_contents", "remove_images", "remove_rejections"]
 
 _CHUNK: Final = 2000
 """Keys of one question: databases take some ten thousand values."""
@@ -53,3 +54,70 @@ def _remove(connection: Connection, keys: list[str]) -> int:
     of_them = images.c.id.in_({row.image_id for row in found})
     connection.execute(delete(images).where(of_them, ~is_used))
     return len(found)
+
+
+def earlier_contents(database: Database, now: Mapping[str, str]) -> dict[str, list[str]]:
+    """Other contents that the archive has of paths.
+
+    Parameters
+    ----------
+    database : Database
+    now : mapping of str to str
+        By path the SHA-256 of the file as it is.
+    """
+    found: dict[str, list[str]] = {}
+    paths = list(now)
+    for at in range(0, len(paths), _CHUNK):
+        asked = select(images.c.path, images.c.content).where(
+            images.c.path.in_(paths[at : at + _CHUNK]), images.c.content.is_not(None)
+        )
+        for path, content in database.read(partial(_pairs, asked=asked.distinct())):
+            # A copy that took the name of another of these files is no earlier content.
+            if content not in now.values():
+                found.setdefault(path, []).append(content)
+    return {path: sorted(found[path]) for path in now if path in found}
+
+
+def _pairs(connection: Connection, asked: Any) -> list[Any]:
+    return list(connection.execute(asked))
+
+
+def remove_images(database: Database, names: Sequence[str], *, dry_run: bool = False) -> int:
+    """Remove images with all their measurements and rejections, and count these.
+
+    Parameters
+    ----------
+    database : Database
+    names : sequence of str
+        Paths, file names, SHA-256 or patterns.
+    dry_run : bool, optional
+        Change nothing, count what would go.
+
+    Raises
+    ------
+    OptionError
+        If a name means no image, or a file name that several have: nothing is removed.
+    ArchiveError
+        If the archive cannot be written.
+    """
+    named = database.read(partial(named_images, names=names, done="removed"))
+    keys = list(dict.fromkeys(key for some in named.values() for key in some))
+    work = partial(_remove_images, keys=keys, dry_run=dry_run)
+    return database.read(work) if dry_run else database.write(work)
+
+
+def _remove_images(connection: Connection, keys: Sequence[ImageKey], dry_run: bool) -> int:
+    count = 0
+    for at in range(0, len(keys), _CHUNK):
+        some = keys[at : at + _CHUNK]
+        contents = [key for key in some if isinstance(key, str)]
+        numbers = [key for key in some if not isinstance(key, str)]
+        wanted = images.c.content.in_(contents) | images.c.id.in_(numbers)
+        ids = list(connection.execute(select(images.c.id).where(wanted)).scalars())
+        rows = select(measurements.c.id).where(measurements.c.image_id.in_(ids))
+        count += len(connection.execute(rows).all())
+        if not dry_run:
+            # Numbers and documents go with their measurements.
+            connection.execute(delete(measurements).where(measurements.c.image_id.in_(ids)))
+            connection.execute(delete(images).where(images.c.id.in_(ids)))
+    return count

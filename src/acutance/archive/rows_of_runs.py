@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from acutance.archive.connection import Database
 from acutance.archive.contradictions import Differing, kept_otherwise
 from acutance.archive.entry import ImageEntry
 from acutance.archive.outcomes import Outcome, kept_outcomes
-from acutance.archive.removing import remove_rejections
+from acutance.archive.removing import earlier_contents, remove_images, remove_rejections
 from acutance.archive.runs import end_run, kept_keys, start_run
 
 __all__ = ["RowsOfRuns"]
@@ -80,3 +80,42 @@ class RowsOfRuns:
             How many were removed.
         """
         return remove_rejections(self._database, keys)
+
+    def earlier_contents(self, now: Mapping[str, str]) -> dict[str, list[str]]:
+        """Contents that files had before and of which there still are rows, by path.
+
+        Parameters
+        ----------
+        now : mapping of str to str
+            By path the SHA-256 of the file as it is.
+
+        Returns
+        -------
+        dict of str to list of str
+            SHA-256; paths that have no other content are left out.
+        """
+        return earlier_contents(self._database, now)
+
+    def remove_images(self, images: Sequence[str], *, dry_run: bool = False) -> int:
+        """Remove images with all their measurements and rejections.
+
+        Parameters
+        ----------
+        images : sequence of str
+            Paths, file names, SHA-256 or patterns.
+        dry_run : bool, optional
+            Change nothing, count what would go.
+
+        Returns
+        -------
+        int
+            How many measurements and rejections were removed.
+
+        Raises
+        ------
+        OptionError
+            If a name means no image, or a file name that several have: nothing is removed.
+        ArchiveError
+            If the archive cannot be written.
+        """
+        return remove_images(self._database, images, dry_run=dry_run)

@@ -29,6 +29,7 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from acutance.curves import METRICS
+from acutance.curves.metric_bounds import limit_fault
 from acutance.errors import OptionError
 from acutance.raster.document_faults import document_faults
 
@@ -45,7 +46,7 @@ class Requirement(BaseModel):
     metric : str
         One of the numbers of a measurement, "mtf_nyquist".
     minimum, maximum : float, optional
-        Exactly one of them.
+        Exactly one of them, above what the metric cannot fall below.
     name : str, optional
         What it is called.
     sensor, level, band, orientation, site, target, kind, method : optional
@@ -87,6 +88,8 @@ class Requirement(BaseModel):
     def _has_one_limit(self) -> Requirement:
         if (self.minimum is None) == (self.maximum is None):
             raise ValueError("give a minimum or a maximum, one of them")
+        if fault := limit_fault(self.metric, self.limit):
+            raise ValueError(f"{self.sentence} cannot be tested: {fault}")
         return self
 
     @field_validator("metric")

@@ -18,6 +18,7 @@ import numpy as np
 
 from acutance.archive.columns import Columns
 from acutance.archive.requirement_answers import Answer, SpecificationCheck
+from acutance.archive.requirement_selection import asked_of, asks_nothing
 from acutance.archive.specification import Requirement, Specification
 from acutance.archive.trends.fit_trend import fit_trend
 from acutance.archive.trends.images import mean_of_images
@@ -26,8 +27,9 @@ from acutance.archive.trends.series import Event, Series, date_of, decimal_year
 from acutance.archive.trends.trend import Trend
 from acutance.archive.trends.tuned import MIN_IMAGES
 from acutance.archive.trends.words import season_words
-from acutance.curves import METRICS, Estimate
+from acutance.curves import Estimate
 from acutance.curves.estimate import normal_quantile
+from acutance.curves.metric_bounds import lowest_of
 from acutance.errors import NothingSelectedError, OptionError
 from acutance.targets.conformity import OPEN, conformity_word
 
@@ -62,7 +64,7 @@ def check_specification(
     events : sequence of Event, optional
         Dates at which the sensors may have changed.
     selection : mapping, optional
-        More filters of an archive; those of a requirement go before them.
+        More filters of an archive; requirements of other sensors, bands and so on are left out.
     unknown : callable, optional
         Which names among filters occur nowhere; "" if all do.
 
@@ -73,12 +75,15 @@ def check_specification(
     Raises
     ------
     NothingSelectedError
-        If every requirement has such names, and nothing is left to be judged.
+        If no requirement is of what is selected, or every one has such names, and nothing is
+        left to be judged.
     """
     answers: list[Answer] = []
     missing: list[str] = []
-    for requirement in specification.requirement:
-        words = {**selection, **requirement.selection}
+    asked = asked_of(specification, selection)
+    if not asked:
+        raise NothingSelectedError(unknown(selection) or asks_nothing(specification, selection))
+    for requirement, words in asked:
         missing.append(unknown(words))
         answers += _answers(requirement, select(words), words, missing[-1], events)
     if all(missing) and not any(answer.images for answer in answers):
@@ -188,7 +193,7 @@ def _by_trend(requirement: Requirement, trend: Trend) -> Answer:
     # Of Student-t scatter an image tells (nu + 1) / (nu + 3) of what a normal one would.
     square = trend.scatter.value**2 + trend.images.typical_std**2
     lost = float(posterior.share @ ((posterior.degrees + 3) / (posterior.degrees + 1)))
-    mean = density.estimate(0.0 if trend.metric in METRICS else None)
+    mean = density.estimate(lowest_of(trend.metric))
     found = _answer(
         requirement, trend.name, met, mean, date_of(year), trend.images.images, square * lost,
         trend.images.systematic_std,

@@ -146,7 +146,7 @@ class MeasurementTable:
             for row in self.rows
             if orientation in row.images_by
         )
-        return replace(self, rows=rows)
+        return replace(self, rows=tuple(row for row in rows if not _repeats(row, rows)))
 
     def to_dict(self) -> dict[str, Any]:
         """All rows as strict JSON types."""
@@ -307,6 +307,15 @@ def _with_averages(
                 blank = ("",) * (width - size - 1)
                 group = (*prefix, AVERAGE, *blank)
                 yield _row(rows, group, _mask(keys, prefix), metrics)
+
+
+def _repeats(average: TableRow, rows: Sequence[TableRow]) -> bool:
+    """Whether an average is that of one row, which the direction has left of its group."""
+    if not average.is_average:
+        return False
+    prefix = average.group[: average.group.index(AVERAGE)]
+    own = [row for row in rows if not row.is_average and row.group[: len(prefix)] == prefix]
+    return len(own) < 2
 
 
 def _single_cells(row: TableRow) -> set[tuple[str, str]]:

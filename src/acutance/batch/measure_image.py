@@ -15,7 +15,7 @@ from acutance.batch.entries import image_entry, target_entry
 from acutance.batch.place_target import NotHereError, PlacedTarget, place_target
 from acutance.batch.plan import StatedOfImages
 from acutance.batch.plan_options import ChosenOptions
-from acutance.batch.reason_words import words_of
+from acutance.batch.reason_words import UNREADABLE, words_of
 from acutance.batch.row_key import Reading, day_of, row_key, unreadable_key
 from acutance.batch.selected_bands import Band, selected
 from acutance.batch.summary import NO_FILE
@@ -172,7 +172,7 @@ def _opened(task: BatchTask) -> _Opened:
 
 def _unreadable(task: BatchTask, error: AcutanceError) -> Entry:
     is_missing = task.content is None and not os.path.lexists(task.path)
-    why = NO_FILE if is_missing else "unreadable image"
+    why = NO_FILE if is_missing else UNREADABLE
     rejected = Rejected("image", str(error), {"why": why, "path": task.path})
     image = ImageEntry(path=task.path, content=task.content, sensor=task.stated.sensor)
     return Entry(rejected=rejected, image=image, key=unreadable_key(task.content, task.path))
@@ -263,10 +263,18 @@ def _require_valid(target: SurveyedTarget, acquired: date | None) -> None:
     if not begin <= acquired <= end:
         raise NotHereError(
             "not there then",
-            f"the image is of {acquired}, and the target is there from {target.valid_from or '-'} "
-            f"to {target.valid_to or '-'}",
+            f"the image is of {acquired}, and the target is there {_times_of(target)}",
             "date",
         )
+
+
+def _times_of(target: SurveyedTarget) -> str:
+    """When a target is there: from a day on, until another, or between both."""
+    if target.valid_to is None:
+        return f"from {target.valid_from} on"
+    if target.valid_from is None:
+        return f"until {target.valid_to}"
+    return f"from {target.valid_from} to {target.valid_to}"
 
 
 def _placed(target: SurveyedTarget, image: Image, opened: _Opened) -> PlacedTarget:

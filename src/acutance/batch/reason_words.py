@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from acutance.errors import AcutanceError
 
-__all__ = ["in_words", "words_of"]
+__all__ = ["UNREADABLE", "in_words", "words_of"]
 
+UNREADABLE = "unreadable image"
 _FAILED = "measurement failed"
 _WORDS = {
-    "ImageError": "unreadable image",
+    "ImageError": UNREADABLE,
     "RegionError": "outside or too small",
     "NoDataError": "no data",
     "TargetError": "no target found",

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from acutance.archive.counted import counted
 from acutance.archive.packing import plain_json
-from acutance.batch.reason_words import in_words
+from acutance.batch.reason_words import UNREADABLE, in_words
 from acutance.batch.selected_bands import Band, without_band
 from acutance.curves.short_repr import ShortRepr
 
@@ -38,7 +38,7 @@ class BatchSummary(ShortRepr):
     images : int
         Of the plan.
     unreadable : tuple of str
-        Images that could not be read now.
+        Images that could not be read, or some pixels of them, now or before.
     missing : tuple of str
         Those among them that do not exist.
     faults : mapping of str to str
@@ -48,6 +48,9 @@ class BatchSummary(ShortRepr):
     kept_otherwise : mapping of str to mapping
         By image, and by the name of what is stated of it and is not what the archive has
         ("sensor"): what is kept, and what is stated. Rows that are there stay as they are.
+    earlier_contents : mapping of str to sequence of str
+        By path the contents (SHA-256) that a changed file had before and of which the archive
+        still has rows: they count beside the new ones until they are removed.
     missing_bands : tuple of (str or int)
         Bands that were asked for and that no image has.
     bands : tuple of str
@@ -74,6 +77,7 @@ class BatchSummary(ShortRepr):
     faults: Mapping[str, str] = field(default_factory=dict)
     copies: Mapping[str, str] = field(default_factory=dict)
     kept_otherwise: Mapping[str, Differing] = field(default_factory=dict)
+    earlier_contents: Mapping[str, Sequence[str]] = field(default_factory=dict)
     missing_bands: tuple[str | int, ...] = ()
     bands: tuple[str, ...] = ()
     done_before: int = 0
@@ -123,6 +127,7 @@ class BatchSummary(ShortRepr):
             "faults": dict(self.faults),
             "copies": dict(self.copies),
             "kept_otherwise": plain_json(self.kept_otherwise),
+            "earlier_contents": {path: list(one) for path, one in self.earlier_contents.items()},
             "missing_bands": list(self.missing_bands),
             "done_before": self.done_before,
             "kept": self.kept,
@@ -152,11 +157,13 @@ class Tally:
         self.outlived: set[str] = set()
         """Keys of rejections that hold no longer: of files that were missing, dates not known."""
 
-    def add_earlier(self, rows: Sequence[Outcome]) -> None:
-        """Count rows that were there before."""
+    def add_earlier(self, path: str, rows: Sequence[Outcome]) -> None:
+        """Count rows of an image that were there before; one that cannot be read is named again."""
         self.earlier += len(rows)
         for one in rows:
             self._count(one.verdict, one.why)
+            if one.verdict is None and in_words(one.why or "") == UNREADABLE:
+                self.faults.setdefault(path, one.reason or "")
 
     def add_image(self, path: str, found: MeasuredImage, new: int) -> None:
         """Count the rows of an image, of which so many were new: another batch may be faster."""
@@ -174,6 +181,9 @@ class Tally:
             elif entry.rejected is not None:
                 why = str(entry.rejected.values.get("why") or entry.rejected.stage)
                 self._count(None, why)
+                if in_words(why) == UNREADABLE:
+                    # The header of a file that is cut off can be read, its pixels cannot.
+                    self.faults.setdefault(path, entry.rejected.reason)
                 if why == NO_FILE:
                     self.missing.append(path)
 
@@ -205,6 +215,7 @@ class Tally:
         run: int | None,
         bands: Iterable[str | int] = (),
         kept_otherwise: Mapping[str, Differing] | None = None,
+        earlier_contents: Mapping[str, Sequence[str]] | None = None,
     ) -> BatchSummary:
         """What came out, verdicts from the best, reasons from the most frequent.
 
@@ -220,6 +231,7 @@ class Tally:
             faults=self.faults,
             copies=self.copies,
             kept_otherwise=kept_otherwise or {},
+            earlier_contents=earlier_contents or {},
             missing_bands=without_band(bands, there) if there else (),
             bands=tuple(
                 f"{one.number} ({one.name})" if one.name else f"{one.number}" for one in there

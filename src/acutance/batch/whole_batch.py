@@ -126,9 +126,10 @@ def run_batch(
         run = _run(todo, wanted, work, place, there, tally, progress, kept) if todo else None
         place.remove_rejections(tally.outlived)
         otherwise = place.kept_otherwise(tally.stated)
+        earlier = place.earlier_contents({path: one.content for path, one in known.items()})
     bands = [one for some in (work.bands, *(t.bands for t in work.targets)) for one in some or ()]
     elapsed_s = time.monotonic() - begin
-    return tally.summary(wanted.archive, len(files), elapsed_s, run, bands, otherwise)
+    return tally.summary(wanted.archive, len(files), elapsed_s, run, bands, otherwise, earlier)
 
 
 def _wanted(
@@ -234,10 +235,10 @@ def _tasks(
         done = by_content.get(content or "", set())
         wanted = None if image is None else _wanted_keys(image, reading, work)
         if unreadable_key(content, file.path) in done:
-            tally.add_earlier([there[unreadable_key(content, file.path)]])
+            tally.add_earlier(file.path, [there[unreadable_key(content, file.path)]])
             continue
         if image is not None and wanted is not None and wanted <= done:
-            tally.add_earlier([there[key] for key in wanted])
+            tally.add_earlier(file.path, [there[key] for key in wanted])
             tally.add_stated(wanted, stated_entry(stated))
             tally.outlived |= _outlived_keys(image, reading, work)
             continue
@@ -299,7 +300,7 @@ def _run(
             image = KnownImage(task.content, found.bands, found.day, found.by_rpc, said)
             memory.remember({file: image})
             wanted = _wanted_keys(image, task.reading, work) or set()
-            tally.add_earlier([there[key] for key in wanted & task.done])
+            tally.add_earlier(file.path, [there[key] for key in wanted & task.done])
             # What stated documents say is known once they were read.
             by_documents = task.stated.metadata is not None
             tally.add_stated(wanted, found.image if by_documents else stated_entry(task.stated))

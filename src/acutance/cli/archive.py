@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -11,6 +12,7 @@ from acutance.cli import (
     archive_check,
     archive_compare,
     archive_correct,
+    archive_remove,
     archive_report,
     archive_table,
     archive_trend,
@@ -30,7 +32,7 @@ from acutance.cli.terminal import BAD_USAGE, NOTHING_MEASURED, fail, say
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:
-    from acutance.archive import Measurements, Rejections
+    from acutance.archive import Entry, Measurements, Rejections
 
 __all__ = ["EXAMPLE", "app", "export", "import_documents", "info", "list_rows", "show"]
 
@@ -219,7 +221,8 @@ def export(
         str,
         typer.Option(
             metavar="FORMAT",
-            help="jsonl, parquet and stac lose nothing; csv has the numbers without curves.",
+            help="jsonl and parquet lose nothing, nor does stac of images with dates, which it "
+            "needs; csv has the numbers without curves.",
         ),
     ],
     documents: Annotated[
@@ -247,11 +250,13 @@ def export(
             count = archive.export(
                 out, to="csv-documents" if documents else to, progress=progress, **selected.words
             )
-    say(f"wrote {out}, {count} {'entry' if count == 1 else 'entries'}")
+        left = _undated(archive.entries(**selected.words)) if to == "stac" else ""
+    say(f"wrote {out}, {count} {'entry' if count == 1 else 'entries'}{left}")
 
 
 app.command("trend", epilog=archive_trend.EXAMPLE)(archive_trend.trend)
 app.command("correct", epilog=archive_correct.EXAMPLE)(archive_correct.correct)
+app.command("remove", epilog=archive_remove.EXAMPLE)(archive_remove.remove)
 app.command("check", epilog=archive_check.EXAMPLE)(archive_check.check)
 app.command("compare", epilog=archive_compare.EXAMPLE)(archive_compare.compare)
 app.command("table", epilog=archive_table.EXAMPLE)(archive_table.table)
@@ -276,6 +281,18 @@ def info(place: PlaceArgument, as_json: JsonOption = False) -> None:
         f"{counted(found.runs, 'run')}; tables of version {found.schema_version}"
     )
     print_sensors(found.sensors)
+
+
+def _undated(entries: Iterable[Entry]) -> str:
+    """How many entries a catalogue leaves out, and of how many images; "" if none."""
+    from acutance.archive.counted import counted
+
+    images = [entry.image.content or entry.image.path for entry in entries
+              if entry.image.acquired is None]  # fmt: skip
+    if not images:
+        return ""
+    of = counted(len(set(images)), "image")
+    return f"; {len(images)} left out, of {of} without a date (acutance archive correct states it)"
 
 
 def _dated(row: dict[str, Any]) -> dict[str, Any]:

@@ -105,24 +105,33 @@ def parse_events(texts: list[str] | None) -> list[Event]:
 
 
 def _text(found: Trend) -> str:
-    from acutance.archive.trends.words import percent, signed
+    from acutance.archive.trends.words import (
+        new_drift_words,
+        part_words,
+        percent,
+        rate_interval,
+        signed,
+        since_words,
+        size_words,
+    )
     from acutance.report.text import align_columns
 
     rate, relative = found.rate_per_year, found.relative_rate_per_year
-    low, high = relative.interval(0.95)
+    in_percent = f"{percent(relative)}, " if found.has_scale else ""
     rows = [
         (f"level on {found.last}", str(found.level), ""),
-        ("drift a year", signed(rate),
-         f"{percent(relative)}, 95 %: {100 * low:+.1f} to {100 * high:+.1f} %"),
+        (f"drift a year{since_words(found)}", signed(rate),
+         f"{in_percent}{rate_interval(found)}"),
         ("scatter between images", str(found.scatter),
-         f"{100 * found.scatter.value / abs(found.level.value or 1.0):.1f} %"),
+         part_words(found.relative_scatter).strip(" ()")),
         ("season, amplitude", str(found.season_amplitude),
          f"probability of a season {found.season_probability:.2f}"),
         ("steps", str(len(found.changes)), f"probability of any {found.step_probability:.2f}"),
         *((f"  {change.date}", signed(change.size),
-           f"{percent(change.relative_size)}, {change.since} to {change.until}, "
+           f"{size_words(change)}, {change.since} to {change.until}, "
            f"probability {change.probability:.2f}") for change in found.changes),
-        *((f"  {effect.date} {effect.name}", signed(effect.size), "stated")
+        *((f"  {effect.date} {effect.name}", signed(effect.size),
+           ", ".join(filter(None, (size_words(effect), "stated", new_drift_words(effect)))))
           for effect in found.events),
     ]  # fmt: skip
     table = align_columns(rows, "lll", indent="  ")

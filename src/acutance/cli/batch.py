@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import shlex
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any
@@ -227,16 +227,16 @@ def _text(found: BatchSummary) -> str:
         f"{counted(found.images, 'image')}: {counted(found.kept, 'row')} added to "
         f"{found.archive}, {there}",
         _counts("measured", found.measured, found.verdicts),
-        _counts("rejected", found.rejected, found.reasons),
+        _counts("rejected", found.rejected, found.reasons, _of_images(found)),
         *_named(f"unreadable: {_fault(*one)}" for one in found.faults.items()),
-        *_named(f"measured once: {path} has the content of {other}"
+        *_named(f"measured once: {path} and {other} have the same content"
                 for path, other in found.copies.items()),
     ]  # fmt: skip
     if found.rejected:
         lines.append(
             f"reasons in full: acutance archive list {shlex.quote(found.archive)} --rejected"
         )
-    lines += _kept_otherwise(found)
+    lines += [*_kept_otherwise(found), *_earlier_contents(found)]
     if found.missing_bands:
         asked = ", ".join(map(str, found.missing_bands))
         lines.append(f"no image has band {asked}: choose from {', '.join(found.bands)}")
@@ -278,6 +278,36 @@ _NAMED = 5
 """Images that are named in the summary; all are rows of the archive."""
 
 
-def _counts(word: str, total: int, parts: Any) -> str:
-    listed = ", ".join(f"{count} {name}" for name, count in parts.items())
+def _of_images(found: BatchSummary) -> dict[str, str]:
+    """Reasons that are those of whole images, with how many these are."""
+    from acutance.archive.counted import counted
+    from acutance.batch.reason_words import UNREADABLE
+    from acutance.batch.summary import NO_FILE
+
+    broken = len(found.unreadable) - len(found.missing)
+    rows = found.reasons.get(UNREADABLE, 0)
+    images = counted(broken, UNREADABLE)
+    return {
+        NO_FILE: counted(len(found.missing), "missing file"),
+        UNREADABLE: images if rows == broken else f"{rows} in {images}",
+    }
+
+
+def _earlier_contents(found: BatchSummary) -> list[str]:
+    """Files that have changed and whose earlier contents still count, and how to remove these."""
+    if not found.earlier_contents:
+        return []
+    several = [one for contents in found.earlier_contents.values() for one in contents]
+    words = ["acutance", "archive", "remove", found.archive]
+    words += [word for one in several[:_NAMED] for word in ("--image", one)]
+    return [
+        *_named(f"changed: {path} was kept with other content before, which still counts"
+                for path in found.earlier_contents),
+        f"to remove rows of earlier contents: {shlex.join(words)}",
+    ]  # fmt: skip
+
+
+def _counts(word: str, total: int, parts: Any, named: Mapping[str, str] | None = None) -> str:
+    of = named or {}
+    listed = ", ".join(of.get(name, f"{count} {name}") for name, count in parts.items())
     return f"{word} {total}" + (f": {listed}" if listed else "")

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 
 from acutance.curves import METRICS, Estimate
 from acutance.curves.estimate import normal_quantile
+from acutance.curves.metric_bounds import limit_fault
 from acutance.errors import OptionError
 from acutance.targets.target_result import TargetResult
 from acutance.targets.uncertainty_budget import STATED_TERMS, TERMS, systematic_share
@@ -41,9 +42,6 @@ ConformityWord = Literal["met", "not met", "cannot be told yet"]
 MET: Final = "met"
 NOT_MET: Final = "not met"
 OPEN: Final = "cannot be told yet"
-
-_SIGNED: Final = ("rer", "giqe_h")
-"""Numbers that may fall below 0."""
 
 Numbers = Mapping[str, Mapping[str, Estimate | None]]
 """Numbers by direction and name."""
@@ -100,11 +98,8 @@ class ToleranceLimit:
             )
         if self.sense not in (">=", "<=") or not math.isfinite(self.limit):
             raise OptionError(f"the requirement {self} has no limit: give a number after >= or <=")
-        if self.limit <= 0 and self.metric not in _SIGNED:
-            raise OptionError(
-                f"the requirement {self} cannot be tested: {self.metric} is never below 0; state a "
-                "limit above"
-            )
+        if fault := limit_fault(self.metric, self.limit):
+            raise OptionError(f"the requirement {self} cannot be tested: {fault}")
         if self.orientation not in (None, "across", "along"):
             raise OptionError(f"a requirement is across or along track, not {self.orientation!r}")
         if not 0.5 < self.confidence < 1:

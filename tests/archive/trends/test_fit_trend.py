@@ -173,7 +173,7 @@ def test_what_has_no_trend_is_refused(series_of: Make) -> None:
     with pytest.raises(ac.OptionError, match="2 images have dates, a trend needs 3"):
         fit_trend(made.of(np.arange(6) < 2))
     undated = replace(made, when=np.where(np.arange(6) == 2, np.nan, made.when))
-    assert "1 measurements without a date are left out." in fit_trend(undated).notes
+    assert "1 measurement without a date is left out." in fit_trend(undated).notes
 
 
 def test_a_changed_gsd_is_an_event_in_pixels_and_none_in_metres(series_of: Make) -> None:

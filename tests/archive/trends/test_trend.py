@@ -57,7 +57,7 @@ def test_a_limit_that_is_passed_or_far_is_told(falling: Trend) -> None:
     assert falling.crosses(0.17).median == falling.last
     upward = falling.crosses(0.3, is_minimum=False)
     assert upward.median is None
-    assert "rises above 0.3 not within 20 years" in upward.summary()
+    assert "does not rise above 0.3 within 20 years, with a probability of" in upward.summary()
     with pytest.raises(ac.OptionError, match="the limit is nan"):
         falling.crosses(float("nan"))
 

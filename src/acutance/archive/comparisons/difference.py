@@ -123,21 +123,27 @@ class Difference:
         relative = sign * self.relative
         low, high = (100 * end for end in relative.interval(LEVEL))
         digits = 2 if high - low < 1 else 1
-        ends = f"95 %: {low:+.{digits}f} to {high:+.{digits}f} %"
+        ends = f"95 %: {low:+.{digits}f} to {high:+.{digits}f} %{self._unit_words}"
         if differ:
             less = f", less than {100 * self.margin:g} %" if high / 100 <= self.margin else ""
             unsigned = ends.replace("+", "")
-            return f"{self._larger_words} by {100 * relative} %{less} ({self.metric}, {unsigned})"
+            size = f"{100 * relative} %{self._unit_words}{less}"
+            return f"{self._larger_words} by {size} ({self.metric}, {unsigned})"
         pair = f"{self.first} and {self.second}"
         if low != low:
             return f"whether {pair} differ cannot be told ({self.metric}, without deviations)"
         ends = f"{self.metric}, {self.first} minus {self.second}, {ends}"
         if self.answer == "agree":
-            return f"{pair} agree within {100 * self.margin:g} % ({ends})"
+            return f"{pair} agree within {100 * self.margin:g} %{self._unit_words} ({ends})"
         if self._is_of_few_images:
             these = "this image" if self.images[0] == 1 else "these images"
             return f"whether {pair} differ cannot be told of so few images ({ends} in {these})"
         return f"whether {pair} differ cannot be told yet ({ends})"
+
+    @property
+    def _unit_words(self) -> str:
+        """What the per cent of an absolute difference are of."""
+        return " of the contrast" if self.metric in ABSOLUTE else ""
 
     @property
     def _larger_words(self) -> str:

@@ -16,11 +16,13 @@ def target_notes(first: MeasuredGroup, second: MeasuredGroup) -> Iterator[str]:
     )
     names = first.name, second.name
     if of := _with(1, targets, names):
-        yield f"One target of {of}: what is peculiar to it is part of the difference."
+        one = f"{of}: one target, and" if of in names else f"One target of {of}:"
+        yield f"{one} what is peculiar to it is part of the difference."
     for what, counts in (("target", targets), ("site", sites)):
         of = _with(2, counts, names)
         if of:
-            yield f"Two {what}s of {of}: two hardly show how much {what}s differ."
+            two = f"{of}: two {what}s, which" if of in names else f"Two {what}s of {of}: two"
+            yield f"{two} hardly show how much {what}s differ."
             return
 
 

@@ -49,10 +49,12 @@ class _Item:
 def write_stac(entries: Iterable[Entry], place: Path) -> int:
     """Write a catalogue into a new folder, and count the entries.
 
+    Images without a date, which an item needs, are left out.
+
     Raises
     ------
     OptionError
-        If pystac is not installed, an image has no date, or the folder is there already, or is
+        If pystac is not installed, no image has a date, or the folder is there already, or is
         called as a file.
     """
     if place.suffix.lower() == ".json":
@@ -78,11 +80,14 @@ def write_stac(entries: Iterable[Entry], place: Path) -> int:
 
 def _write_lines(entries: Iterable[Entry], folder: Path) -> tuple[dict[str, _Item], int]:
     items: dict[str, _Item] = {}
-    count = 0
+    count, undated = 0, ""
     for entry in entries:
+        if entry.image.acquired is None:
+            undated = undated or entry.image.path or "(without a path)"
+            continue
         name = item_name(entry.image)
         if name not in items:
-            items[name] = _Item(entry.image, _acquired(entry))
+            items[name] = _Item(entry.image, as_utc(entry.image.acquired, "acquired"))
             (folder / name).mkdir(parents=True)
         item = items[name]
         for part, numbers in item_numbers(entry):
@@ -93,16 +98,12 @@ def _write_lines(entries: Iterable[Entry], folder: Path) -> tuple[dict[str, _Ite
         with (folder / name / _LINES).open("ab") as lines:
             lines.write(json_bytes(entry_document(entry)) + b"\n")
         count += 1
-    return items, count
-
-
-def _acquired(entry: Entry) -> datetime:
-    if entry.image.acquired is None:
+    if undated and not items:
         raise OptionError(
-            f"image {entry.image.path or '(without a path)'} has no date, and an item of STAC "
-            "needs one: leave those without a date out (since), or export to jsonl or parquet"
+            f"image {undated} has no date, nor has any other, and an item of STAC needs one: "
+            "correct the images, or export to jsonl or parquet"
         )
-    return as_utc(entry.image.acquired, "acquired")
+    return items, count
 
 
 def _write_items(items: dict[str, _Item], folder: Path) -> None:

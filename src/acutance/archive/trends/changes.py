@@ -9,7 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from acutance.archive.trends.normal_mixture import NormalMixture
 from acutance.archive.trends.posterior import TrendPosterior
+from acutance.archive.trends.relative import is_told_from_zero
 from acutance.archive.trends.series import date_of
 from acutance.archive.trends.tuned import REPORTED_STEP
 from acutance.curves import Estimate
@@ -18,6 +20,8 @@ from acutance.curves.grid import Floats
 __all__ = ["Change", "EventEffect", "event_effects", "found_changes"]
 
 _LEVEL = 0.95
+_JUST_YEARS = 1e-6
+"""Half a minute."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +37,7 @@ class Change:
     size : Estimate
         In the units of the metric; negative where it fell.
     relative_size : Estimate
-        Over the level before it.
+        Over the level just before it; ``nan`` where that may be 0.
     probability : float
         That there is a step between those days.
     """
@@ -67,23 +71,31 @@ class EventEffect:
     date : date
     size : Estimate
         Step, in the units of the metric.
-    drift_change_per_year : Estimate or None
-        Where the drift may have changed.
+    relative_size : Estimate
+        Over the level just before it; ``nan`` where that may be 0.
+    drift_before_per_year, drift_change_per_year : Estimate or None
+        Where the drift may have changed, in the units of the metric.
     """
 
     name: str
     date: datetime.date
     size: Estimate
+    relative_size: Estimate
+    drift_before_per_year: Estimate | None = None
     drift_change_per_year: Estimate | None = None
 
     def to_dict(self) -> Mapping[str, Any]:
         """All fields, the date in ISO 8601."""
-        slope = self.drift_change_per_year
+        slopes = {
+            "drift_before_per_year": self.drift_before_per_year,
+            "drift_change_per_year": self.drift_change_per_year,
+        }
         return {
             "name": self.name,
             "date": self.date.isoformat(),
             "size": self.size.to_dict(),
-            "drift_change_per_year": None if slope is None else slope.to_dict(),
+            "relative_size": self.relative_size.to_dict(),
+            **{name: None if one is None else one.to_dict() for name, one in slopes.items()},
         }
 
 
@@ -107,14 +119,36 @@ def _change(posterior: TrendPosterior, those: TrendPosterior, place: int) -> Cha
         _gap_quantile(low, high, those.share, level)
         for level in (0.5 - _LEVEL / 2, 0.5, 0.5 + _LEVEL / 2)
     )
-    size = those.coefficient(posterior.design.size + place)
-    before = np.array([middle - 1e-6])
-    levels, _ = those.of(those.rows(before, season=False))
-    level = float(those.share @ levels[:, 0]) or 1.0
+    index = posterior.design.size + place
     return Change(
-        date_of(middle), date_of(since), date_of(until), size.estimate(),
-        size.times(1 / level).estimate(), _probability(posterior, since, until),
+        date_of(middle), date_of(since), date_of(until), those.coefficient(index).estimate(),
+        _relative_size(those, index, 0.5 * (low + high)), _probability(posterior, since, until),
     )  # fmt: skip
+
+
+def _relative_size(posterior: TrendPosterior, index: int, when: Floats) -> Estimate:
+    """A step over the level just before it, by the density of both.
+
+    Parameters
+    ----------
+    posterior : TrendPosterior
+    index : int
+        The coefficient of the step.
+    when : (q,) array
+        Where each density has it: between two images they differ about the day, and a level of
+        one day for all would be that after the step in some.
+    """
+    rows = posterior.rows_each(when - _JUST_YEARS)
+    level, level_std = posterior.of(rows[:, None])
+    if not is_told_from_zero(NormalMixture(posterior.share, level[:, 0], level_std[:, 0])):
+        return Estimate(np.nan, np.nan)
+    size = posterior.unit * posterior.mode[:, index]
+    ratio = size / level[:, 0]
+    # d(size / level) = (d size - ratio d level) / level
+    slopes = -ratio[:, None] * rows
+    slopes[:, index] += 1.0
+    _, std = posterior.of((slopes / level)[:, None])
+    return NormalMixture(posterior.share, ratio, std[:, 0]).estimate()
 
 
 def _gap_quantile(low: Floats, high: Floats, share: Floats, level: float) -> float:
@@ -146,7 +180,11 @@ def event_effects(posterior: TrendPosterior) -> tuple[EventEffect, ...]:
     found, at = [], 4
     for event in posterior.design.events:
         size = posterior.coefficient(at).estimate()
-        slope = posterior.coefficient(at + 1).estimate() if event.changes_drift else None
-        found.append(EventEffect(event.name, date_of(event.year), size, slope))
+        relative = _relative_size(posterior, at, np.full(posterior.share.size, event.year))
+        slopes: tuple[Estimate, ...] = ()
+        if event.changes_drift:
+            before = posterior.rate(event.year - _JUST_YEARS)
+            slopes = before.estimate(), posterior.coefficient(at + 1).estimate()
+        found.append(EventEffect(event.name, date_of(event.year), size, relative, *slopes))
         at += 1 + event.changes_drift
     return tuple(found)

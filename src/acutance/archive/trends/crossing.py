@@ -72,9 +72,10 @@ class Crossing(ShortRepr):
         if self.probability[0] >= 0.5:
             return f"{verb} {self.limit:g} already (probability {self.probability[0]:.2f})"
         if median is None:
+            verb = "fall below" if self.falls else "rise above"
             return (
-                f"{verb} {self.limit:g} not within {self.years:.0f} years with a probability of "
-                f"{1 - self.probability[-1]:.2f}, if the drift goes on"
+                f"does not {verb} {self.limit:g} within {self.years:.0f} years, with a probability "
+                f"of {1 - self.probability[-1]:.2f}, if the drift goes on"
             )
         since = f"not before {early}" if early is not None else "any day"
         until = f"by {late}" if late is not None else f"or not within {self.years:.0f} years"

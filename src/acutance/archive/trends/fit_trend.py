@@ -75,7 +75,8 @@ def _require_time(images: ImageMeans, series: Series) -> None:
 
 def _left_out(series: Series, dated: Series) -> tuple[str, ...]:
     left = series.known().size - dated.size
-    return (f"{left} measurements without a date are left out.",) if left else ()
+    are = "is" if left == 1 else "are"
+    return (f"{counted(left, 'measurement')} without a date {are} left out.",) if left else ()
 
 
 def _outside(images: ImageMeans, events: Sequence[Event]) -> tuple[str, ...]:

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from acutance.archive.trends.series import Series
 from acutance.archive.weighted_means import WeightedMean, weighted_mean
-from acutance.curves import METRICS
 from acutance.curves.grid import Floats
+from acutance.curves.metric_bounds import lowest_of
 from acutance.curves.short_repr import ShortRepr
 
 __all__ = ["ImageMeans", "image_means", "joined_images", "mean_of_images"]
@@ -183,7 +183,7 @@ def mean_of_images(series: Series) -> WeightedMean:
     series : Series
     """
     known = series.known()
-    lowest = 0.0 if series.metric in METRICS else None
+    lowest = lowest_of(series.metric)
     if np.unique(known.image).size == 1:
         # No other image shows how much they scatter: the targets of this one stand in.
         systematic = 0.0

@@ -134,6 +134,13 @@ class TrendPosterior(ShortRepr):
         repeated = np.broadcast_to(fixed, (self.share.size, *fixed.shape))
         return np.concatenate([repeated, after], axis=2)
 
+    def rows_each(self, when: Floats) -> Floats:
+        """The same, without the season, at a date of its own for every density, (q, p + 3)."""
+        fixed = self.design.columns(when, season=False)
+        with np.errstate(invalid="ignore"):
+            after = when[:, None] >= 0.5 * (self.step_low + self.step_high)
+        return np.column_stack([fixed, after])
+
     def of(self, rows: Floats) -> tuple[Floats, Floats]:
         """Means and standard deviations of sums of coefficients, (q, n) each.
 
@@ -144,6 +151,14 @@ class TrendPosterior(ShortRepr):
         mean = np.einsum("qni,qi->qn", rows, self.mode)
         variance = np.einsum("qni,qij,qnj->qn", rows, self.covariance, rows)
         return self.unit * mean, self.unit * np.sqrt(np.maximum(variance, 0.0))
+
+    def rate(self, when: float) -> NormalMixture:
+        """The density of the drift per year at a date."""
+        row = np.zeros(self.mode.shape[1])
+        slopes = self.design.slopes(when)
+        row[: slopes.size] = slopes
+        mean, std = self.of(np.broadcast_to(row, (self.share.size, 1, row.size)))
+        return NormalMixture(self.share, mean[:, 0], std[:, 0])
 
     def coefficient(self, index: int) -> NormalMixture:
         """The density of one coefficient."""

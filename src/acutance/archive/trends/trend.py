@@ -19,11 +19,13 @@ from acutance.archive.trends.documents import posterior_document, read_posterior
 from acutance.archive.trends.images import ImageMeans
 from acutance.archive.trends.normal_mixture import NormalMixture
 from acutance.archive.trends.posterior import TrendPosterior
+from acutance.archive.trends.relative import is_told_from_zero
 from acutance.archive.trends.scatter import with_scatter
 from acutance.archive.trends.series import date_of, decimal_year
 from acutance.archive.trends.words import trend_text
-from acutance.curves import METRICS, Estimate
+from acutance.curves import Estimate
 from acutance.curves.grid import Floats
+from acutance.curves.metric_bounds import limit_fault, lowest_of
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 from acutance.targets.document_fields import require_document
@@ -129,12 +131,7 @@ class Trend(ShortRepr):
     @cached_property
     def rate(self) -> NormalMixture:
         """The posterior of the drift per year at the end of the series."""
-        row = np.zeros(self.posterior.mode.shape[1])
-        slopes = self.posterior.design.slopes(float(self.images.when[-1]))
-        row[: slopes.size] = slopes
-        rows = np.broadcast_to(row, (self._drifting.share.size, 1, row.size))
-        mean, std = self._drifting.of(rows)
-        return NormalMixture(self._drifting.share, mean[:, 0], std[:, 0])
+        return self._drifting.rate(float(self.images.when[-1]))
 
     @cached_property
     def rate_per_year(self) -> Estimate:
@@ -143,8 +140,20 @@ class Trend(ShortRepr):
 
     @cached_property
     def relative_rate_per_year(self) -> Estimate:
-        """Drift per year over the level."""
-        return self.rate.times(1 / (self.level.value or 1.0)).estimate()
+        """Drift per year over the level; ``nan`` where that may be 0."""
+        if not self.has_scale:
+            return Estimate(np.nan, np.nan)
+        return self.rate.times(1 / self.level.value).estimate()
+
+    @cached_property
+    def relative_scatter(self) -> float:
+        """Scatter between images over the level; ``nan`` where that may be 0."""
+        return self.scatter.value / abs(self.level.value) if self.has_scale else np.nan
+
+    @cached_property
+    def has_scale(self) -> bool:
+        """Whether the level is told from 0, of which changes have no per cent."""
+        return is_told_from_zero(self.mean(float(self.images.when[-1]), season=False))
 
     @cached_property
     def step_probability(self) -> float:
@@ -165,6 +174,13 @@ class Trend(ShortRepr):
     def events(self) -> tuple[EventEffect, ...]:
         """What changed at the stated events."""
         return event_effects(self._drifting)
+
+    @property
+    def drift_event(self) -> EventEffect | None:
+        """The last event since which the drift is another one; ``None`` without such."""
+        within = (one for one in self.events if self.first < one.date <= self.last)
+        own = [one for one in within if one.drift_change_per_year is not None]
+        return own[-1] if own else None
 
     @cached_property
     def season_probability(self) -> float:
@@ -246,6 +262,8 @@ class Trend(ShortRepr):
                 f"the limit is {limit:g} and the time {within_years:g} years: give a number, and "
                 "a time above 0"
             )
+        if fault := limit_fault(self.metric, limit):
+            raise OptionError(f"the limit {limit:g} of {self.metric} is never passed: {fault}")
         falls = not self.metric.startswith(_LESS_IS_SHARPER) if is_minimum is None else is_minimum
         return find_crossing(
             self._drifting, self.images.systematic_std, float(self.images.when[-1]), limit,
@@ -271,6 +289,11 @@ class Trend(ShortRepr):
                                  *self._scales(self.images.typical_std))  # fmt: skip
         images = [mixture_quantiles(scattered.share, scattered.mean, scattered.std, level)
                   for level in levels[-2:]]  # fmt: skip
+        lowest = lowest_of(self.metric)
+        if lowest is not None:
+            # As the intervals of the level: no part of a band lies where no value can be.
+            middle, *ends = (np.maximum(lowest, one) for one in (middle, *ends))
+            images = [np.maximum(lowest, one) for one in images]
         return TrendBands(years, middle, (ends[0], ends[1]), (ends[2], ends[3]),
                           (images[0], images[1]))  # fmt: skip
 
@@ -280,7 +303,7 @@ class Trend(ShortRepr):
         return np.hypot(scatter, std), self._drifting.degrees
 
     def _estimate(self, density: NormalMixture) -> Estimate:
-        return density.estimate(0.0 if self.metric in METRICS else None)
+        return density.estimate(lowest_of(self.metric))
 
     def summary(self) -> str:
         """What the trend is, in a few sentences."""

@@ -8,6 +8,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
 from acutance.archive import Archive
+from acutance.archive.requirement_selection import asked_of, asks_nothing
+from acutance.archive.specification import read_specification
 from acutance.errors import NothingSelectedError, OptionError
 from acutance.report.archive.gsd_bands import with_gsd_bands
 from acutance.report.archive.sensor_comparisons import (
@@ -90,13 +92,17 @@ def sensor_page(
     # Told apart by their GSD here, too, and with the note that their band is not named.
     states = states_of(rows, sensor, metric, events)
     rows = with_gsd_bands(rows)
-    check = None
+    check, unasked = None, ""
     if specification is not None:
-        check = archive.check(specification, events=events, sensor=sensor)
+        stated = read_specification(specification)
+        if asked_of(stated, {"sensor": sensor}):
+            check = archive.check(stated, events=events, sensor=sensor)
+        else:
+            unasked = asks_nothing(stated, {"sensor": sensor})
     comparisons = comparisons_of(rows, sensor, metric)
     content = (
-        *_answer_sections(states, check, comparisons),
-        *_trend_sections(states, check),
+        *_answer_sections(states, check, comparisons, unasked),
+        *_trend_sections(states, check, sensor),
         *map(Section.of_table, comparison_tables(comparisons)),
         *_curve_sections(rows),
         *map(Section.of_table, means_tables(rows)),
@@ -112,11 +118,16 @@ def _facts(every: Measurements, rejected: Rejections, used: Measurements) -> dic
 
 
 def _answer_sections(
-    states: Sequence[SeriesState], check: SpecificationCheck | None, comparisons: SensorComparisons
+    states: Sequence[SeriesState],
+    check: SpecificationCheck | None,
+    comparisons: SensorComparisons,
+    unasked: str,
 ) -> list[Section]:
     """Specification, changes and comparisons first; then the state of every direction."""
     answers = check.answers if check else ()
+    nothing = [Verdict("usable", f"{unasked[:1].upper()}{unasked[1:]}.")] if unasked else []
     verdicts = (
+        *nothing,
         *map(_answer_verdict, answers),
         *map(_state_verdict, states),
         *(Verdict("usable", sentence) for sentence in comparisons.sentences),
@@ -152,18 +163,21 @@ def _changes_verdict(state: SeriesState) -> Verdict:
 
 
 def _trend_sections(
-    states: Sequence[SeriesState], check: SpecificationCheck | None
+    states: Sequence[SeriesState], check: SpecificationCheck | None, sensor: str
 ) -> list[Section]:
     plates = tuple(
-        trend_plate(one.trend, _limit_of(one, check)) for one in states if one.trend is not None
+        trend_plate(one.trend, _limit_of(one, check, sensor))
+        for one in states
+        if one.trend is not None
     )
     return [Section("Through time", plates=plates)] if plates else []
 
 
-def _limit_of(state: SeriesState, check: SpecificationCheck | None) -> float | None:
+def _limit_of(state: SeriesState, check: SpecificationCheck | None, sensor: str) -> float | None:
     """The limit that a requirement sets for a series."""
+    own = ", ".join(filter(None, (sensor, state.name)))
     for answer in check.answers if check else ():
-        if answer.requirement.metric == state.metric and answer.what.endswith(state.name):
+        if answer.requirement.metric == state.metric and answer.what == own:
             return answer.requirement.limit
     return None
 

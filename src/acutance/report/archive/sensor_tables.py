@@ -16,7 +16,7 @@ from acutance.archive.tables_by import MeasurementTable, table_by
 from acutance.archive.trends import Trend
 from acutance.curves import MAIN_NUMBERS
 from acutance.report.archive.sensor_state import SeriesState
-from acutance.report.archive.wording import event_percent, interval_words, percent
+from acutance.report.archive.wording import interval_words, rate_words, step_words
 from acutance.report.html import Table
 from acutance.report.labels import METRIC_WORDS, MISSING, metric_words, word_estimate
 from acutance.targets.conformity import written_probability
@@ -58,7 +58,7 @@ def _level_and_drift(state: SeriesState, metric: str) -> str:
     level, found = word_estimate(state.level(metric)).value_and_std, state.found[metric]
     if not isinstance(found, Trend):
         return level
-    return f"{level}\n{percent(found.relative_rate_per_year)} a year"
+    return f"{level}\n{rate_words(found)} a year"
 
 
 def _span(days: tuple[date, ...]) -> str:
@@ -67,8 +67,8 @@ def _span(days: tuple[date, ...]) -> str:
 
 
 def _changes(trend: Trend) -> list[str]:
-    found = [f"{one.date} {percent(one.relative_size)}" for one in trend.changes]
-    found += [f"{one.date} {one.name} {event_percent(trend, one)}" for one in trend.events]
+    found = [f"{one.date} {step_words(one)}" for one in trend.changes]
+    found += [f"{one.date} {one.name} {step_words(one)}" for one in trend.events]
     return found or [f"none found ({1 - trend.step_probability:.2f})"]
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.report.archive.dates import axis_days, date_axis, day_on_axis
+from acutance.report.archive.wording import step_words
 from acutance.report.labels import METRIC_WORDS
 from acutance.report.paper import BLUE, FAINT, GREEN, INK, ORANGE, VERMILION, new_page, styled
 
@@ -165,9 +166,8 @@ def _draw_step(axes: Axes, change: Change) -> None:
     day, since, until = map(day_on_axis, (change.date, change.since, change.until))
     axes.axvspan(since, until, color=ORANGE, alpha=0.18, linewidth=0)
     axes.axvline(day, color=ORANGE, linewidth=1.2)
-    size = 100 * change.relative_size
     axes.text(
-        day, 0.98, f" step {size.value:+.1f} ± {size.std:.1f} % ",
+        day, 0.98, f" step {step_words(change)} ",
         transform=axes.get_xaxis_transform(), ha="left", va="top", fontsize=8.5, color=INK,
         bbox={"facecolor": "white", "alpha": 0.75, "linewidth": 0, "pad": 1.0},
     )  # fmt: skip

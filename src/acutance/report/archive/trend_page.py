@@ -7,21 +7,23 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from acutance.archive.trends.series import date_of
-from acutance.archive.trends.words import season_words
+from acutance.archive.trends.words import new_drift_words, season_words, since_words
 from acutance.curves import Estimate
 from acutance.report.archive.trend_figure import are_bad, trend_figure
 from acutance.report.archive.wording import (
-    event_percent,
     interval_words,
     percent,
+    rate_words,
     signed,
+    step_percent,
+    step_words,
     with_minus,
 )
 from acutance.report.html import Plate, Section, Table, Verdict, render_page
 from acutance.report.labels import METRIC_WORDS, MISSING, word_estimate
 
 if TYPE_CHECKING:
-    from acutance.archive.trends import Trend
+    from acutance.archive.trends import EventEffect, Trend
 
 __all__ = ["trend_page", "trend_plate", "trend_verdict"]
 
@@ -84,20 +86,19 @@ def trend_verdict(trend: Trend, limit: float | None = None, label: str = "") -> 
         Begins the sentence.
     """
     words: list[str] = []
-    rate = trend.relative_rate_per_year
+    rate, since = trend.rate_per_year, since_words(trend)
     if not _holds_zero(rate):
-        words.append(
-            f"{'rises' if rate.value > 0 else 'falls'} by {percent(rate, sign=False)} a year"
-        )
-    words += [f"changed by {percent(one.relative_size)} about {one.date}" for one in trend.changes]
+        verb = "rises" if rate.value > 0 else "falls"
+        words.append(f"{verb} by {rate_words(trend, sign=False)} a year{since}")
+    words += [f"changed by {step_words(one)} about {one.date}" for one in trend.changes]
     words += [
-        f"{one.name} of {one.date}: {event_percent(trend, one)}"
+        f"{one.name} of {one.date}: {step_words(one)}"
         for one in trend.events
         if not _holds_zero(one.size)
     ]
     changed = bool(words)
     if not changed:
-        words = [f"no change is found: {percent(rate)} a year"]
+        words = [f"no change is found: {rate_words(trend)} a year{since}"]
     level = f"{METRIC_WORDS[trend.metric].of(_value(trend.level))} on {trend.last}"
     word: Literal["good", "doubtful"] = "doubtful" if changed else "good"
     details = [("season", text) for text in (with_minus(season_words(trend)),) if text]
@@ -127,18 +128,23 @@ def _value(estimate: Estimate) -> str:
 def _numbers_table(trend: Trend) -> Table:
     words = METRIC_WORDS[trend.metric]
     rate, relative = trend.rate_per_year, trend.relative_rate_per_year
+    since = since_words(trend)
+    # A level that may be 0 has no per cent.
+    in_percent = [
+        (
+            f"drift per year [%]{since}",
+            percent(relative).removesuffix(" %"),
+            interval_words(100.0 * relative),
+        )
+    ] if trend.has_scale else []  # fmt: skip
     rows = [
         (
             f"{words.label_with_unit} on {trend.last}",
             _value(trend.level),
             interval_words(trend.level),
         ),
-        ("drift per year", _value(rate), interval_words(rate)),
-        (
-            "drift per year [%]",
-            percent(relative).removesuffix(" %"),
-            interval_words(100.0 * relative),
-        ),
+        (f"drift per year{since}", _value(rate), interval_words(rate)),
+        *in_percent,
         ("scatter between images", _value(trend.scatter), MISSING),
         ("season, half its range", _value(trend.season_amplitude), MISSING),
         ("probability of a season", f"{trend.season_probability:.2f}", MISSING),
@@ -151,12 +157,12 @@ def _changes_table(trend: Trend) -> tuple[Table, ...]:
     rows = [
         (
             f"{one.date}\n{one.since} to {one.until}", "step, found",
-            _value(one.size), percent(one.relative_size), f"{one.probability:.2f}",
+            _value(one.size), step_percent(one), f"{one.probability:.2f}",
         )
         for one in trend.changes
     ] + [
         (
-            str(one.date), one.name, _value(one.size), event_percent(trend, one), MISSING,
+            str(one.date), _event_words(one), _value(one.size), step_percent(one), MISSING,
         )
         for one in trend.events
     ]  # fmt: skip
@@ -164,6 +170,11 @@ def _changes_table(trend: Trend) -> tuple[Table, ...]:
         return ()
     columns = ("Date", "What", "Size", "Relative", "Probability")
     return (Table(columns, tuple(rows), "llrrr", title="Changes"),)
+
+
+def _event_words(event: EventEffect) -> str:
+    """The name of an event, below it what it changed of the drift."""
+    return "\n".join(filter(None, (event.name, with_minus(new_drift_words(event)))))
 
 
 def _images_table(trend: Trend) -> Table:

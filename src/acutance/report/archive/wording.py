@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
+import math
 import re
 from typing import TYPE_CHECKING
 
+from acutance.archive.trends.words import signed as signed_number
+from acutance.archive.trends.words import size_words
 from acutance.report.labels import MISSING, word_estimate
 
 if TYPE_CHECKING:
-    from acutance.archive.trends import EventEffect, Trend
+    from acutance.archive.trends import Change, EventEffect, Trend
     from acutance.curves import Estimate
 
-__all__ = ["event_percent", "interval_words", "percent", "signed", "with_minus"]
+__all__ = [
+    "interval_words",
+    "percent",
+    "rate_words",
+    "signed",
+    "step_percent",
+    "step_words",
+    "with_minus",
+]
 
 _NEGATIVE = re.compile(r"(?<![\w.])-(?=[\d.])")
 
@@ -22,9 +33,22 @@ def percent(estimate: Estimate, *, sign: bool = True) -> str:
     return f"{value:{'+' if sign else ''}.1f} ± {100 * estimate.std:.1f} %".replace("-", "−")
 
 
-def event_percent(trend: Trend, event: EventEffect) -> str:
-    """What a stated event changed, in per cent of the level."""
-    return percent((1 / (trend.level.value or 1.0)) * event.size)
+def step_percent(step: Change | EventEffect) -> str:
+    """A step, found or stated, in per cent of the level before it; a dash where that may be 0."""
+    return MISSING if math.isnan(step.relative_size.value) else percent(step.relative_size)
+
+
+def step_words(step: Change | EventEffect) -> str:
+    """The same; where the level may be 0, in the units of the metric."""
+    return with_minus(size_words(step)) if step_percent(step) == MISSING else step_percent(step)
+
+
+def rate_words(trend: Trend, *, sign: bool = True) -> str:
+    """The drift a year in per cent of the level; where that may be 0, in units of the metric."""
+    rate = trend.rate_per_year
+    if trend.has_scale:
+        return percent(trend.relative_rate_per_year, sign=sign)
+    return with_minus(signed_number(rate)) if sign else str(rate if rate.value > 0 else -rate)
 
 
 def interval_words(estimate: Estimate) -> str:

@@ -54,7 +54,8 @@ def straight_panels(measurement: StraightMeasurement) -> tuple[Panel, ...]:
         return mtf, lsf
     target = Panel(
         "The pixels and the line",
-        "The region, the fitted line or both sides of the pulse, and the pixels of the fit.",
+        f"The region, {'the fitted line' if width_px is None else 'both sides of the pulse'}, and "
+        "the pixels of the fit.",
         on_axes(draw_target, measurement),
         is_target=True,
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from acutance.archive.counted import counted
 from acutance.report.labels import MISSING, format_number
 from acutance.report.paper import BLUE, FAINT, INK, new_page, styled
 from acutance.report.text import align_columns
@@ -37,26 +38,32 @@ def mirror_plan_text(plan: MirrorPlan) -> str:
     """A plan of mirrors as text: layout, mirrors, phases, what to expect."""
     layout, options = plan.layout, plan.options
     along_m, across_m = layout.pixel_m
-    if options.arrangement == "columns":
-        where = (
-            f"{options.count} mirrors in {options.column_count} columns, {layout.apart_px:.2f} px "
-            f"({layout.apart_px * across_m:.2f} m) apart"
+    if options.count == 1:
+        # One mirror has no distance to another, and no steps.
+        where, steps = "1 mirror in 1 column", ""
+    elif options.arrangement == "columns":
+        columns = counted(options.column_count, "column")
+        apart = (
+            f", {layout.apart_px:.2f} px ({layout.apart_px * across_m:.2f} m) apart"
+            if options.column_count > 1
+            else ""
         )
+        where = f"{options.count} mirrors in {columns}{apart}"
         steps = (
-            f"steps of {layout.step_px[1]:g} px across and {layout.step_px[0]:g} px along "
+            f"\n  steps of {layout.step_px[1]:g} px across and {layout.step_px[0]:g} px along "
             f"({layout.step_px[1] * across_m:.2f} by {layout.step_px[0] * along_m:.2f} m), "
             f"{layout.angle_deg:.1f} degrees against the image's columns"
         )
     else:
-        where = f"{options.count} mirrors in a square"
+        where = f"{counted(options.count, 'mirror')} in a square"
         steps = (
-            f"pitch {layout.step_px[0]:g} px ({layout.step_px[0] * across_m:.2f} m across, "
+            f"\n  pitch {layout.step_px[0]:g} px ({layout.step_px[0] * across_m:.2f} m across, "
             f"{layout.step_px[0] * along_m:.2f} m along)"
         )
     changes = (-0.05, -0.02, 0.0, 0.02, 0.05)
     gaps = ", ".join(f"{layout.gap_px(change):.2f} ({change:+.0%})" for change in changes)
     blocks = [
-        f"{where}\n  {steps}\n  largest gap of the phases, px, if the GSD is other than planned: "
+        f"{where}{steps}\n  largest gap of the phases, px, if the GSD is other than planned: "
         f"{gaps}",
         f"mirrors: radius of curvature {plan.radius_m:.2f} m, cap at least {plan.diameter_m:.2f} m "
         f"across\n  for a brightest pixel as bright as ground of reflectance {options.level:g} on "
