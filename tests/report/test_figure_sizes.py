@@ -53,7 +53,7 @@ def test_the_title_keeps_off_the_axis_in_metres(edge):
     (axes,) = figure.axes
     (second,) = axes.child_axes
     label = second.xaxis.label.get_window_extent()
-    assert axes._left_title.get_window_extent().y0 > label.y1 + 2
+    assert axes._left_title.get_window_extent().y0 > label.y1 + 7
 
 
 def test_zeros_of_a_pulse_can_be_read(pulse):
