@@ -140,7 +140,8 @@ def result_names() -> str:
 
 def other_names() -> str:
     """The other names of ``import acutance as ac``, errors left out."""
-    listed = {*CALLS, *RESULTS, *acutance.errors.__all__, "__version__"}
+    # Errors have a page of their own, and no page of a package.
+    listed = {*CALLS, *RESULTS, *acutance.errors.__all__, "errors", "__version__"}
     return _names([name for name in acutance.__all__ if name not in listed])
 
 

@@ -32,7 +32,21 @@ from acutance.errors import (
 )
 
 if TYPE_CHECKING:
-    from acutance import optics, report, simulate, targets
+    from acutance import (
+        archive,
+        batch,
+        curves,
+        execution,
+        geometry,
+        optics,
+        raster,
+        report,
+        restoration,
+        scan,
+        simulate,
+        studies,
+        targets,
+    )
     from acutance.archive import Archive
     from acutance.batch import BatchPlan, BatchSummary, read_plan, run_batch
     from acutance.curves import Esf, Estimate, Estimates, Lsf, Mtf, Response
@@ -170,7 +184,22 @@ _HOMES = {
     "sites": "acutance.raster",
     "verify_restoration": "acutance.restoration",
 }
-_MODULES = ("optics", "report", "simulate", "targets")
+_MODULES = (
+    "archive",
+    "batch",
+    "curves",
+    "errors",
+    "execution",
+    "geometry",
+    "optics",
+    "raster",
+    "report",
+    "restoration",
+    "scan",
+    "simulate",
+    "studies",
+    "targets",
+)
 
 __all__ = [
     "AcutanceError",
@@ -235,10 +264,16 @@ __all__ = [
     "TargetResult",
     "Verdict",
     "__version__",
+    "archive",
+    "batch",
     "combine",
+    "curves",
     "design_restoration",
     "each_edge",
     "each_pulse",
+    "errors",
+    "execution",
+    "geometry",
     "measure_bars",
     "measure_biresolution",
     "measure_edge",
@@ -250,15 +285,19 @@ __all__ = [
     "niirs",
     "open_image",
     "optics",
+    "raster",
     "read_plan",
     "read_statement",
     "report",
+    "restoration",
     "restore",
     "run_batch",
+    "scan",
     "scan_bands",
     "scan_scene",
     "simulate",
     "sites",
+    "studies",
     "targets",
     "verify_restoration",
 ]

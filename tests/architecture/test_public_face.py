@@ -116,6 +116,15 @@ def test_the_lazy_table_is_the_public_face() -> None:
         _ = acutance.mtf
 
 
+ROOMS = {"archive", "batch", "execution", "scan"} | {one.split(".")[0] for one in PACKAGES}
+
+
+@pytest.mark.parametrize("room", sorted(ROOMS))
+def test_a_room_is_there_right_after_the_import(room: str) -> None:
+    """Whatever was imported before: a notebook's cell must not depend on those above it."""
+    assert acutance.__getattr__(room) is importlib.import_module(f"acutance.{room}")
+
+
 def test_the_textbook_describes_every_package() -> None:
     page = ROOT.parents[1] / "docs" / "api.rst"
     if not page.is_file():

@@ -339,3 +339,21 @@ def test_what_was_written_is_told_where_no_edge_proves_it(acutance, folder, tmp_
     assert "band 1: 6400 pixels" in result.stdout
     assert "name regions with edges" in result.stderr
     assert (tmp_path / "o.tif").exists()
+
+
+def test_an_overshoot_is_stated_in_per_cent_as_well(acutance, folder):
+    documents = []
+    for text in ("4%", "0.04"):
+        out = folder / "over.json"
+        result = acutance(
+            "restore", "design", folder / "across.json", folder / "along.json", "--size", 9,
+            "--overshoot", text, "--out", out,
+        )  # fmt: skip
+        assert result.exit_code == 0, result.stderr
+        documents.append(json.loads(out.read_text())["kernel"])
+    assert documents[0] == documents[1]
+    refused = acutance(
+        "restore", "design", folder / "across.json", "--overshoot", "much", "--out", out
+    )
+    assert refused.exit_code == 2
+    assert "--overshoot much: write a share of the contrast (0.5% or 0.005)" in refused.stderr

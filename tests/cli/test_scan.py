@@ -207,3 +207,20 @@ def test_an_image_without_data_is_named(refused, tmp_path):
     path = tmp_path / "nothing.npy"
     np.save(path, np.full((100, 100), np.nan))
     refused(("scan", path), "none of the 100 x 100 pixels holds data", 4)
+
+
+def test_the_help_promises_no_more_than_one_region(acutance, scene, tmp_path):
+    shown = " ".join(acutance("scan", "--help").stdout.split())
+    assert "a GeoJSON file with one polygon" in shown
+    assert "each polygon of which" not in shown
+    assert "several regions" not in shown
+    corners = [[[10, 10], [200, 10], [200, 200], [10, 10]], [[9, 9], [99, 9], [99, 99], [9, 9]]]
+    polygons = [
+        {"type": "Feature", "properties": {}, "geometry": {"type": "Polygon", "coordinates": [one]}}
+        for one in corners
+    ]
+    places = tmp_path / "two.geojson"
+    places.write_text(json.dumps({"type": "FeatureCollection", "features": polygons}))
+    refused = acutance("scan", scene, "--roi", places)
+    assert refused.exit_code == 2
+    assert "a scene is one" in refused.stderr

@@ -134,3 +134,11 @@ def test_impossible_plans_are_refused(acutance, words, message):
 def test_the_usage_of_a_plan_names_its_command(acutance, target):
     usage = acutance("plan", target, "--help").stdout.splitlines()[0]
     assert usage.endswith(f" plan {target} [OPTIONS]")
+
+
+def test_the_help_of_an_edge_s_plan_is_of_an_edge(acutance):
+    edge, pulse = (acutance("plan", one, "--help").stdout for one in ("edge", "pulse"))
+    assert "--width" not in edge
+    assert "plan pulse" not in edge
+    assert "--width-m" in pulse
+    assert "plan edge" not in pulse

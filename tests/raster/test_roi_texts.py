@@ -48,7 +48,7 @@ def in_lonlat(ring, image):
 
 
 def test_four_numbers_are_whole_pixels(plain):
-    for text in ("5,10,10,20", " 5, 10 ,10, 20 "):
+    for text in ("5,10,10,20", " 5, 10 ,10, 20 ", "5.0,10,10,20."):
         assert parse_roi(text, plain).box(plain.shape) == SQUARE_BOX
     assert parse_roi("0,0,40,50", plain).mask(Box(0, 0, 40, 50)).all()
 

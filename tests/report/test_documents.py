@@ -8,7 +8,7 @@ import pytest
 from jsonschema import Draft202012Validator, ValidationError
 
 from acutance.report import document as document_of
-from acutance.report import json_text, measurement_schema, truth_document
+from acutance.report import json_text, measurement_schema, page, text, truth_document
 
 
 @pytest.fixture(scope="module")
@@ -87,6 +87,9 @@ def test_comparison_and_target_hold_measurements(compared, target, validator):
         validator.validate(document)
     assert whole["groups"]["along"]["edges"] == [2, 3]
     assert whole["groups"]["along"]["chi_square"]["rer"] > 0
+    # Text and page count from 1, and say what that is in the document.
+    for shown in (text(target), page(target)):
+        assert "edge 1 is measurements[0]" in shown
     assert whole["rejected"][0]["stage"] == "phases"
 
 

@@ -3,8 +3,11 @@
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
+import acutance as ac
+from acutance import simulate
 from acutance.curves import METRICS, Estimate
 from acutance.report import page, text
 from acutance.report.labels import (
@@ -110,3 +113,18 @@ def test_what_was_stated_and_another_centre_stand_in_the_header(measurement):
     for shown in (describe_image(stated), text(stated), page(stated)):
         assert "20 %" in shown
         assert "the LSF's peak" in shown.replace("&#39;", "'").replace("&#x27;", "'")
+
+
+def test_a_centre_that_nobody_stated_is_that_of_the_method():
+    image, _ = simulate.edge(
+        simulate.reference_systems()["gaussian"],
+        angle_deg=6, snr=100, rng=np.random.default_rng(0),
+    )  # fmt: skip
+    plain = ac.measure_edge(image)
+    assert plain.options["rer_centre"] is None
+    draft = ac.measure_edge(image, method="kompsat-2014")
+    for shown in (describe_image, text):
+        for one in (plain, plain.record):
+            assert "RER centre" not in shown(one)
+        for one in (draft, draft.record):
+            assert "RER centre the LSF's peak" in shown(one)

@@ -151,3 +151,28 @@ def test_a_kernel_that_blurs_is_told_in_text_and_page():
     filter = ac.design_restoration(sensor, noise_gain=0.2, snr=80, size=7)
     for shown in (restoration_text(filter), restoration_page(filter)):
         assert "the kernel blurs edges, it does not sharpen" in shown
+
+
+def test_version_5_names_no_input_that_it_does_not_have():
+    stated = {"gsd_m": 0.7, "rer": 0.45, "snr": 80}
+    plain, older = (niirs_text(ac.niirs(**stated, version=one)) for one in (5, 4))
+    for words in ("overshoot H", "noise gain"):
+        assert words not in plain
+        assert words in older
+
+
+def test_notes_on_a_niirs_are_no_rows_of_its_table():
+    rows = niirs_text(ac.niirs(gsd_m=0.7, rer=0.45, snr=2)).splitlines()
+    assert next(row for row in rows if "low SNR" in row).startswith("note: low SNR: ")
+
+
+def test_a_proof_has_what_the_filter_was_designed_for():
+    sensor = ac.Sensor([ac.optics.Gaussian(0.5), ac.optics.Detector()])
+    filter = ac.design_restoration(sensor, snr=100, noise_gain=1.6)
+    pixels, _ = ac.simulate.edge(
+        sensor, shape=(100, 100), angle_deg=7, snr=100, rng=np.random.default_rng(1)
+    )
+    before, after = map(ac.Image.from_array, (pixels, ac.restore(pixels, filter)))
+    shown = proof_text(ac.verify_restoration(before, after, filter, [(10, 10, 80, 80)]))
+    assert "designed for" in shown.splitlines()[1]
+    assert f"{np.exp(-2 * (np.pi * 0.5 * 0.5) ** 2) * np.sinc(0.5):.3f}" in shown

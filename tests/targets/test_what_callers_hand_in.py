@@ -152,3 +152,20 @@ def test_curves_are_called_at_numbers(edge):
         with pytest.raises(ac.OptionError, match=f"{name} is 'a', which is no number"):
             curve("a")
         assert curve(np.array(0.5)) == curve(0.5) == curve(np.float64(0.5))
+
+
+def test_whole_numbers_may_be_floats_and_a_polygon_may_be_its_corners():
+    pixels, _ = ac.simulate.edge(
+        ac.simulate.reference_systems()["gaussian"], angle_deg=6, shape=(60, 60), snr=100,
+        rng=np.random.default_rng(0),
+    )  # fmt: skip
+    assert ac.Box(20.0, 5, np.float64(30), 30) == ac.Box(20, 5, 30, 30)
+    by_box = ac.measure_edge(pixels, (10.0, 10, 40, 40.0))
+    assert by_box.image.roi == (10, 10, 40, 40)
+    corners = [(9.5, 9.5), (9.5, 49.5), (49.5, 49.5), (49.5, 9.5)]
+    for polygon in (np.array(corners), corners):
+        assert ac.measure_edge(pixels, polygon).mtf_nyquist == by_box.mtf_nyquist
+    assert len(ac.measure_edges(pixels, np.array(corners)).measurements) == 1
+    assert len(ac.measure_edges(pixels, np.array([[10, 10, 40, 40]]))) == 1
+    with pytest.raises(ac.RegionError, match=r"whole number, not 20\.5"):
+        ac.measure_edge(pixels, (20.5, 5, 30, 30))

@@ -134,8 +134,15 @@ def parse_stated(option: str, text: str | None) -> Estimate | None:
     return Estimate(*numbers)
 
 
-def parse_share(option: str, text: str | None) -> float:
+def parse_share(option: str, text: str | None, of: str = "the contrast") -> float:
     """A share, as a number (0.005) or in per cent (0.5%); 0 where none is given.
+
+    Parameters
+    ----------
+    option, text : str
+        Its name, and what was typed.
+    of : str, optional
+        Of what.
 
     Raises
     ------
@@ -147,9 +154,7 @@ def parse_share(option: str, text: str | None) -> float:
     try:
         return float(text[:-1]) / 100 if text.endswith("%") else float(text)
     except ValueError:
-        raise OptionError(
-            f"{option} {text}: write a share of the contrast (0.5% or 0.005)"
-        ) from None
+        raise OptionError(f"{option} {text}: write a share of {of} (0.5% or 0.005)") from None
 
 
 def parse_band(text: str) -> int:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
 from acutance.cli.choices import numbers_of
+from acutance.cli.option_groups import with_groups
 from acutance.cli.options import JsonOption
 from acutance.cli.output import check_optional
 from acutance.cli.progress import progress_bar
@@ -17,17 +19,87 @@ from acutance.errors import OptionError
 if TYPE_CHECKING:
     from acutance.optics import Sensor
 
-__all__ = ["EXAMPLE", "plan"]
+__all__ = ["EDGE_EXAMPLE", "EDGE_LINE", "PULSE_EXAMPLE", "PULSE_LINE", "plan_edge", "plan_pulse"]
 
-EXAMPLE = (
-    "\b\nExample:\n"
-    "  acutance plan edge --gsd 0.7 --snr 100 --rows 40 --angle 6 --sensor generic-2005\n"
-    "  acutance plan pulse --width-m 8.83 --gsd 2.8 --snr 70 --accuracy 0.005"
-)
+EDGE_LINE = "  acutance plan edge --gsd 0.7 --snr 100 --rows 40 --angle 6 --sensor generic-2005"
+PULSE_LINE = "  acutance plan pulse --width-m 8.83 --gsd 2.8 --snr 70 --accuracy 0.005"
+EDGE_EXAMPLE = f"\b\nExample:\n{EDGE_LINE}"
+PULSE_EXAMPLE = f"\b\nExample:\n{PULSE_LINE}"
 
 
-def plan(
-    context: typer.Context,
+@dataclass(frozen=True)
+class DesignOptions:
+    """What is planned with, of an edge and of a pulse."""
+
+    sensor: SensorName = "generic-2005"
+    gsd: Annotated[
+        float | None,
+        typer.Option(metavar="M", help="Ground sampling distance, if not the sensor's own."),
+    ] = None
+    snr: Annotated[
+        float | None,
+        typer.Option(metavar="RATIO", help="Contrast over noise; 100 unless given."),
+    ] = None
+    contrast: Annotated[
+        float | None, typer.Option(metavar="DN", help="Height of the target; needs --noise.")
+    ] = None
+    noise: Annotated[
+        float | None,
+        typer.Option(metavar="DN", help="Standard deviation of the noise; needs --contrast."),
+    ] = None
+    rows: Annotated[
+        str,
+        typer.Option(
+            metavar="N,...",
+            help="Image rows across the target; several are compared, the first is the plan.",
+        ),
+    ] = "40"
+    angle: Annotated[
+        str,
+        typer.Option(
+            metavar="DEG,...",
+            help="Tilt against the columns; several are compared, the first is the plan.",
+        ),
+    ] = "6"
+    accuracy: Annotated[
+        float | None,
+        typer.Option(metavar="STD", help="Wanted for the MTF at Nyquist: how many rows?"),
+    ] = None
+    draws: Annotated[
+        int,
+        typer.Option(
+            metavar="N", min=0, help="Simulated images a design, 2 or more; 0 for bounds."
+        ),
+    ] = 200
+    seed: Annotated[int, typer.Option(metavar="N", min=0, help="Of the random numbers.")] = 2005
+    workers: WorkersOption = None
+    csv: Annotated[str | None, typer.Option(metavar="FILE", help="Write the table: .csv.")] = None
+    figure: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Draw the table: .png, .svg or .pdf.")
+    ] = None
+    as_json: JsonOption = False
+
+
+# Of an edge they are no options, and whoever types them is told why.
+_NoWidth = Annotated[str | None, typer.Option(hidden=True)]
+
+
+@with_groups
+def plan_edge(
+    *, width_px: _NoWidth = None, width_m: _NoWidth = None, design: DesignOptions
+) -> None:
+    """Plan an edge: the standard deviations to expect, by theory and by simulation.
+
+    How many rows, which angle.
+    """
+    if width_px is not None or width_m is not None:
+        raise OptionError("--width-px and --width-m belong to a pulse: an edge has no width")
+    _plan("edge", design)
+
+
+@with_groups
+def plan_pulse(
+    *,
     width_px: Annotated[
         str | None,
         typer.Option(
@@ -39,80 +111,45 @@ def plan(
     width_m: Annotated[
         str | None, typer.Option(metavar="M,...", help="The same in metres; needs a GSD.")
     ] = None,
-    sensor: SensorName = "generic-2005",
-    gsd: Annotated[
-        float | None,
-        typer.Option(metavar="M", help="Ground sampling distance, if not the sensor's own."),
-    ] = None,
-    snr: Annotated[
-        float | None,
-        typer.Option(metavar="RATIO", help="Contrast over noise; 100 unless given."),
-    ] = None,
-    contrast: Annotated[
-        float | None, typer.Option(metavar="DN", help="Height of the target; needs --noise.")
-    ] = None,
-    noise: Annotated[
-        float | None,
-        typer.Option(metavar="DN", help="Standard deviation of the noise; needs --contrast."),
-    ] = None,
-    rows: Annotated[
-        str,
-        typer.Option(
-            metavar="N,...",
-            help="Image rows across the target; several are compared, the first is the plan.",
-        ),
-    ] = "40",
-    angle: Annotated[
-        str,
-        typer.Option(
-            metavar="DEG,...",
-            help="Tilt against the columns; several are compared, the first is the plan.",
-        ),
-    ] = "6",
-    accuracy: Annotated[
-        float | None,
-        typer.Option(metavar="STD", help="Wanted for the MTF at Nyquist: how many rows?"),
-    ] = None,
-    draws: Annotated[
-        int,
-        typer.Option(
-            metavar="N", min=0, help="Simulated images a design, 2 or more; 0 for bounds."
-        ),
-    ] = 200,
-    seed: Annotated[int, typer.Option(metavar="N", min=0, help="Of the random numbers.")] = 2005,
-    workers: WorkersOption = None,
-    csv: Annotated[str | None, typer.Option(metavar="FILE", help="Write the table: .csv.")] = None,
-    figure: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Draw the table: .png, .svg or .pdf.")
-    ] = None,
-    as_json: JsonOption = False,
+    design: DesignOptions,
 ) -> None:
-    """Plan a target: the standard deviations to expect, by theory and by simulation.
+    """Plan a pulse: the standard deviations to expect, by theory and by simulation.
 
-    An edge: how many rows, which angle. A pulse: which width of tarp, too.
+    Which width of tarp, how many rows, which angle.
     """
+    _plan("pulse", design, width_px, width_m)
+
+
+def _plan(
+    target: Literal["edge", "pulse"],
+    design: DesignOptions,
+    width_px: str | None = None,
+    width_m: str | None = None,
+) -> None:
+    """Plan a target and deliver what is asked for."""
     from acutance.report import figure_bytes, json_text, plan_text, study_figure
     from acutance.studies import PlanOptions, plan_target
 
-    target: Literal["edge", "pulse"] = "pulse" if context.info_name == "pulse" else "edge"
-    if target == "edge" and (width_px is not None or width_m is not None):
-        raise OptionError("--width-px and --width-m belong to a pulse: an edge has no width")
-    table = check_optional("--csv", csv, (".csv",), keep=(sensor,))
-    drawing = check_optional("--figure", figure, (".png", ".svg", ".pdf"), keep=(sensor,))
-    system = named_sensor(sensor, gsd)
+    kept = (design.sensor,)
+    table = check_optional("--csv", design.csv, (".csv",), keep=kept)
+    drawing = check_optional("--figure", design.figure, (".png", ".svg", ".pdf"), keep=kept)
+    system = named_sensor(design.sensor, design.gsd)
     options = PlanOptions(
-        target=target, sensor=system, snr=_snr(snr, contrast, noise),
-        rows=_whole_numbers("--rows", rows),
-        angles_deg=_numbers("--angle", angle), widths_px=_widths(width_px, width_m, system),
-        draws=draws, accuracy=accuracy,
+        target=target, sensor=system, snr=_snr(design.snr, design.contrast, design.noise),
+        rows=_whole_numbers("--rows", design.rows),
+        angles_deg=_numbers("--angle", design.angle),
+        widths_px=_widths(width_px, width_m, system), draws=design.draws,
+        accuracy=design.accuracy,
     )  # fmt: skip
     with progress_bar(f"plan {target}") as progress:
-        result: Any = plan_target(options, execution_of(seed, workers, None, progress))
+        result: Any = plan_target(
+            options, execution_of(design.seed, design.workers, None, progress)
+        )
     if table is not None:
         table.deliver(result.table.to_csv())
     if drawing is not None:
         drawing.deliver(figure_bytes(study_figure(result), drawing.ending))
-    typer.echo(json_text(result.to_dict()) if as_json else plan_text(result))
+    typer.echo(json_text(result.to_dict()) if design.as_json else plan_text(result))
 
 
 def _snr(snr: float | None, contrast: float | None, noise: float | None) -> float:

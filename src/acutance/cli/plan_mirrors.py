@@ -8,8 +8,14 @@ import typer
 
 from acutance.cli.options import JsonOption
 from acutance.cli.output import check_optional
-from acutance.cli.plan import EXAMPLE as TARGETS_EXAMPLE
-from acutance.cli.plan import plan
+from acutance.cli.plan import (
+    EDGE_EXAMPLE,
+    EDGE_LINE,
+    PULSE_EXAMPLE,
+    PULSE_LINE,
+    plan_edge,
+    plan_pulse,
+)
 from acutance.cli.progress import progress_bar
 from acutance.cli.sensor import SensorName, named_sensor
 from acutance.cli.study import WorkersOption, execution_of
@@ -26,13 +32,16 @@ app = typer.Typer(
     no_args_is_help=True,
     rich_markup_mode=None,
     help="Plan a target: the accuracy to expect of it, where its parts have to stand.",
-    epilog=f"{TARGETS_EXAMPLE}\n{EXAMPLE.splitlines()[-1]}",
+    epilog=f"\b\nExamples:\n{EDGE_LINE}\n{PULSE_LINE}\n{EXAMPLE.splitlines()[-1]}",
 )
-for _name, _words in (
-    ("edge", "How many rows, which angle: the accuracy to expect."),
-    ("pulse", "How many rows, which angle and width: the accuracy to expect."),
-):
-    app.command(_name, short_help=_words, epilog=TARGETS_EXAMPLE)(plan)
+app.command(
+    "edge", short_help="How many rows, which angle: the accuracy to expect.", epilog=EDGE_EXAMPLE
+)(plan_edge)
+app.command(
+    "pulse",
+    short_help="How many rows, which angle and width: the accuracy to expect.",
+    epilog=PULSE_EXAMPLE,
+)(plan_pulse)
 
 
 @app.command("mirrors", epilog=EXAMPLE)

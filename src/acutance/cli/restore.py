@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from acutance.cli.choices import parse_band
+from acutance.cli.choices import parse_band, parse_share
 from acutance.cli.documents import read_json
 from acutance.cli.option_groups import with_groups
 from acutance.cli.options import (
@@ -65,8 +65,8 @@ class KnobOptions:
         ),
     ] = None
     overshoot: Annotated[
-        float | None,
-        typer.Option(metavar="SHARE", help="Largest overshoot of an edge, 0.05 for 5 %."),
+        str | None,
+        typer.Option(metavar="SHARE", help="Largest overshoot of an edge (5% or 0.05)."),
     ] = None
     target: Annotated[
         str | None,
@@ -150,7 +150,7 @@ def design(
 
     found = design_restoration(
         known, snr=snr, noise_gain=knob.noise_gain, mtf_nyquist=knob.mtf_nyquist,
-        overshoot=knob.overshoot,
+        overshoot=None if knob.overshoot is None else parse_share("--overshoot", knob.overshoot),
         target=None if knob.target is None else named_sensor(knob.target),
         size=size, method=method, scene=_scene(scene), desired=desired,  # type: ignore[arg-type]
         isotropic=isotropic, gsd_m=parse_gsd(gsd), names=inputs or None,

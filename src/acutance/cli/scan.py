@@ -40,8 +40,16 @@ EXAMPLE = (
 
 @dataclass(frozen=True)
 class ScenePixelOptions(PixelOptions):
-    """Which pixels are meant: of one band or of several."""
+    """Which pixels are meant: of one band or of several, and of one region."""
 
+    roi: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ROI",
+            help="Region: ROW,COL,HEIGHT,WIDTH in pixels, lonlat:WEST,SOUTH,EAST,NORTH in "
+            "degrees, or a GeoJSON file with one polygon. The whole image without it.",
+        ),
+    ] = None
     band: Annotated[
         str,
         typer.Option(
@@ -50,6 +58,34 @@ class ScenePixelOptions(PixelOptions):
             "the shifts between them.",
         ),
     ] = "1"
+
+
+@dataclass(frozen=True)
+class SceneResultOptions(ResultOptions):
+    """What is asked of a scene: of several bands, never of several regions."""
+
+    figure: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE",
+            help="Draw the steps: .png, .svg or .pdf. Of several bands one file each: "
+            "FILE-band-1.png.",
+        ),
+    ] = None
+    report: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE",
+            help="Write a self-contained page: .html. Of several bands one page of all of them.",
+        ),
+    ] = None
+    csv: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE",
+            help="Write the MTF in steps of 0.02 c/px: .csv. Of several bands: FILE-band-1.csv.",
+        ),
+    ] = None
 
 
 @dataclass(frozen=True)
@@ -107,7 +143,7 @@ def scan(
     objects: ObjectOptions,
     workers: WorkersOption = None,
     dask: Annotated[str | None, dask_option("IMAGE under the same name")] = None,
-    wanted: ResultOptions,
+    wanted: SceneResultOptions,
 ) -> None:
     """Measure a sensor from all straight edges of a scene: roofs, fields, roads, coasts.
 

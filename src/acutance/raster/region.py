@@ -47,7 +47,9 @@ class Box:
         for name in ("row", "col", "height", "width"):
             value = getattr(self, name)
             try:
-                object.__setattr__(self, name, operator.index(value))
+                # Arithmetic on floats gives whole numbers, too: 20.0.
+                is_whole = isinstance(value, float) and value.is_integer()
+                object.__setattr__(self, name, int(value) if is_whole else operator.index(value))
             except TypeError:
                 raise RegionError(
                     f"{name} of a pixel box must be a whole number, not {value!r}"

@@ -16,7 +16,7 @@ from acutance.raster.region import Box, Region
 
 __all__ = ["parse_features", "parse_roi", "parse_rois"]
 
-_RECTANGLE = re.compile(r"^\s*-?\d+\s*(,\s*-?\d+\s*){3}$")
+_RECTANGLE = re.compile(r"^\s*-?\d+(\.0*)?\s*(,\s*-?\d+(\.0*)?\s*){3}$")
 _NUMBERS = re.compile(r"^[\d\s.,+-]+$")
 _FORMS = (
     "write ROW,COL,HEIGHT,WIDTH (pixels), lonlat:WEST,SOUTH,EAST,NORTH (degrees) "
@@ -105,7 +105,7 @@ def parse_features(text: str, image: Image) -> dict[str, Region | str]:
         As by `parse_rois`.
     """
     if _RECTANGLE.match(text):
-        box = Box(*(int(number) for number in text.split(",")))
+        box = Box(*(int(float(number)) for number in text.split(",")))
         box.require_inside(image.shape)
         return {text.strip(): Region.from_box(box)}
     if text.startswith("lonlat:"):

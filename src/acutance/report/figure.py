@@ -52,8 +52,10 @@ KIND_PANELS: dict[str, Callable[[Any], tuple[Panel, ...]]] = {
 WIDTH_IN = 13.0
 ROW_IN = 4.3
 LINE_IN = FONT_SIZE * ROW_HEIGHT / 72
-LINES_WITH_ROOM = 16
+LINES_WITH_ROOM, LINES_BESIDE_DRAWING = 16, 24
 TITLE_IN = 0.4
+FAILED = "✗"
+CHECK_COLUMNS, CHECK_PLACES = 3, (0.0, 0.07, 0.74, 0.97)
 
 
 def draw(
@@ -112,14 +114,26 @@ def measurement_figure(measurement: Measurement, *, backdrop: Floats | None = No
     rows, last = _arranged(panels(measurement, backdrop=backdrop))
     heights = [max(panel.height_in for panel in row) for row in rows]
     lines = max(len(numbers), len(checks) + 2)
+    # A long list beside a drawing leaves half of the sheet empty: it gets a row of columns.
+    are_apart = last is not None and lines > LINES_BESIDE_DRAWING
+    lines = len(numbers) if are_apart else lines
     last_in = ROW_IN + LINE_IN * max(0, lines - LINES_WITH_ROOM)
+    below_in = LINE_IN * (len(_columns(checks)[0]) + 4) if are_apart else 0.0
     with styled():
-        figure = new_page(WIDTH_IN, sum(heights) + last_in + TITLE_IN)
-        parts = split_page(figure, len(rows) + 1, 1, heights=[*heights, last_in])
+        figure = new_page(WIDTH_IN, sum(heights) + last_in + below_in + TITLE_IN)
+        below = [below_in] if are_apart else []
+        heights = [*heights, last_in, *below]
+        parts = split_page(figure, len(heights), 1, heights=heights)
         for part, row in zip(parts, rows, strict=False):
             for place, panel in zip(split_page(part, 1, len(row)), row, strict=True):
                 panel.draw(place)
-        _draw_last(parts[-1], measurement, last, numbers, checks)
+        if last is not None and are_apart:
+            drawing, beside = split_page(parts[-2], 1, 2)
+            last.draw(drawing)
+            _write_numbers(beside.subplots(), measurement, numbers)
+            _write_columns(parts[-1], measurement, checks)
+        else:
+            _draw_last(parts[-1], measurement, last, numbers, checks)
         figure.suptitle(
             f"{describe_measurement(measurement)}\n{describe_image(measurement, NAME_WITH_ROOM)}",
             x=0.012, ha="left", fontsize=11,
@@ -180,7 +194,7 @@ def _number_rows(measurement: Measurement) -> list[tuple[str, ...]]:
 def _check_rows(measurement: Measurement) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = [("", "", "found", "asked")]
     for check in measurement.checks:
-        mark = "✓" if check.passed else "✗"
+        mark = "✓" if check.passed else FAILED
         rows.append((mark, check.name, write_found(check, 3), check.asked))
     return rows
 
@@ -190,15 +204,39 @@ def _write_numbers(axes: Axes, measurement: Measurement, rows: Sequence[Sequence
     axes.set_title(spread_name(measurement, "Numbers"))
 
 
+def _columns(checks: Sequence[Sequence[str]]) -> list[list[Sequence[str]]]:
+    """The list of checks in three columns as long as each other, each with the header."""
+    header, *rows = checks
+    size = -(-len(rows) // CHECK_COLUMNS)
+    return [[header, *rows[i : i + size]] for i in range(0, len(rows), size)]
+
+
+def _write_columns(
+    page: FigureBase, measurement: Measurement, checks: Sequence[Sequence[str]]
+) -> None:
+    """The checks in columns, and below the first how many failed."""
+    columns = _columns(checks)
+    for i, (part, rows) in enumerate(zip(split_page(page, 1, len(columns)), columns, strict=True)):
+        axes = part.subplots()
+        colors = [VERMILION if row[0] == FAILED else INK for row in rows]
+        write_grid(axes, rows, places=CHECK_PLACES, align="llrr", colors=colors)
+        axes.set_title(" " if i else f"Checks: {measurement.verdict.word}")
+        if not i:
+            _write_count(axes, measurement, len(rows))
+
+
 def _write_checks(axes: Axes, measurement: Measurement, rows: Sequence[Sequence[str]]) -> None:
-    colors = [INK, *(INK if check.passed else VERMILION for check in measurement.checks)]
+    colors = [VERMILION if row[0] == FAILED else INK for row in rows]
     if measurement.checks:
-        write_grid(axes, rows, places=(0.0, 0.07, 0.76, 1.0), align="llrr", colors=colors)
+        write_grid(axes, rows, places=CHECK_PLACES, align="llrr", colors=colors)
     else:
         axes.axis("off")
     axes.set_title(f"Checks: {measurement.verdict.word}" if measurement.checks else "Checks")
+    _write_count(axes, measurement, len(rows) if measurement.checks else 0)
+
+
+def _write_count(axes: Axes, measurement: Measurement, rows: int) -> None:
     write_below(
-        axes, count_failed_checks([measurement]),
-        rows=len(rows) if measurement.checks else 0,
+        axes, count_failed_checks([measurement]), rows=rows,
         color=INK if measurement.trusted else VERMILION,
     )  # fmt: skip

@@ -330,13 +330,19 @@ def provenance(result: Measurement | Record, max_name: int | None = None) -> dic
         found["stated softness"] = softness
     if level := result.options.get("level_uncertainty"):
         found["stated level uncertainty"] = f"{format_number(100 * level)} %"
-    if (centre := result.options.get("rer_centre", "half")) != "half":
+    if (centre := _rer_centre(result)) != "half":
         found["RER centre"] = f"the LSF's {centre}"
     for name, title in (("sensor", "satellite"), ("acquired", "acquired")):
         if result.options.get(name):
             found[title] = str(result.options[name])
     found["measured"] = result.measured_at.isoformat(sep=" ", timespec="minutes")[:16] + " UTC"
     return found
+
+
+def _rer_centre(result: Measurement | Record) -> str:
+    """About which centre RER is taken: the stated one, else that of the method."""
+    stated = result.options.get("rer_centre")
+    return stated or next(one.rer_centre for one in result.directions.values())
 
 
 def _gsd_words(pixel_gsd_m: tuple[float, float], along_track: str) -> str:

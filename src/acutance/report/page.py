@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 __all__ = ["page", "panel_plate", "rejection_page", "sections", "verdict_of"]
 
 PLATE_IN, WIDE_IN = 6.0, 12.4
+MAX_COLUMNS_BESIDE = 5
 
 
 def page(
@@ -152,14 +153,19 @@ def _measurement_sections(
     target = [panel for panel in others if panel.is_target]
     rest = [panel for panel in others if not panel.is_target]
     *numbers, last = map(Section.of_table, tables(measurement))
+    headline = headline_table(numbers_of(measurement), measurement)
+    plates = tuple(map(panel_plate, (mtf, *target)))
+    # A wider table would leave the MTF less than half of the page.
+    has_room = len(headline.columns) <= MAX_COLUMNS_BESIDE
     return (
         Section(
             "Result",
             verdicts=(verdict_of(measurement),),
-            tables=(headline_table(numbers_of(measurement), measurement),),
-            plates=tuple(map(panel_plate, (mtf, *target))),
+            tables=(headline,),
+            plates=plates if has_room else (),
             side_by_side=True,
         ),
+        *(() if has_room else (Section("", plates=plates),)),
         Section(
             "Curves" if measurement.details is None else "Curves and pixels",
             plates=tuple(map(panel_plate, rest)),

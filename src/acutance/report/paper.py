@@ -33,6 +33,8 @@ BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY = (
     "#56B4E9",
 )
 PALETTE = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY)
+PLUM = "#8a3a68"
+"""The purple of the palette, dark enough for thin lines and small letters."""
 INK, FAINT, SHADE = "#1b2530", "#66717d", "#eceff2"
 
 NAME_WITH_ROOM = 40
@@ -46,6 +48,8 @@ _STYLE: dict[Any, Any] = {
     "axes.titlesize": 11,
     "axes.titleweight": "bold",
     "axes.titlelocation": "left",
+    # From the title's baseline: the label of an axis at the top keeps off its descenders.
+    "axes.titlepad": 10.0,
     "axes.labelsize": 9.5,
     "axes.edgecolor": FAINT,
     "axes.labelcolor": INK,

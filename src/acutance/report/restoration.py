@@ -86,7 +86,8 @@ def niirs_text(found: Niirs) -> str:
     ----------
     found : Niirs
     """
-    return "\n".join((table_text(niirs_table(found)), *(f"  {note}" for note in found.notes)))
+    notes = [f"note: {note}" for note in found.notes]
+    return "\n\n".join((table_text(niirs_table(found)), *(["\n".join(notes)] if notes else [])))
 
 
 def _title(filter: RestorationFilter) -> str:

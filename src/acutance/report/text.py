@@ -23,7 +23,7 @@ from acutance.report.requirements import Required, required_lines
 from acutance.report.tables.measurement import numbers_table
 from acutance.report.tables.result import kind_tables, tables
 from acutance.report.tables.scene_reasons import reasons_table
-from acutance.report.tables.target import notes_on_means
+from acutance.report.tables.target import HOW_COUNTED, notes_on_means
 from acutance.report.tables.uncertainty_budget import uncertainty_line
 from acutance.targets import Record, TargetResult
 
@@ -127,6 +127,7 @@ def _target_text(result: TargetResult[Any], required: Required) -> str:
             str(common_verdict(measurements)),
             *required_lines(result, required),
             *map(table_text, tables(result)),
+            *((HOW_COUNTED,) if measurements else ()),
             *notes_on_means(result),
             *(["\n".join(("Failed checks", *failed))] if failed else []),
         )

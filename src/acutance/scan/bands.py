@@ -126,7 +126,7 @@ def scan_bands(
         Bands of one grid, displaced by less than about 2 pixels.
     bands : sequence of int, optional
         Which bands, from 1; all of them without it (a band of transparency is none).
-    roi : Region, Box, (row, col, height, width) or None
+    roi : Region, Box, (row, col, height, width), (n, 2) corners or None
         Part of the image.
     gsd_m : float or Gsd, optional
         Ground sampling distance in metres, instead of the image's own.

@@ -58,7 +58,7 @@ def scan_scene(
     ----------
     image : Image, (rows, cols) array_like or path
         An image of any size: it is read in windows.
-    roi : Region, Box, (row, col, height, width) or None
+    roi : Region, Box, (row, col, height, width), (n, 2) corners or None
         Part of the image.
     gsd_m : float or Gsd, optional
         Ground sampling distance in metres, instead of the image's own.

@@ -88,7 +88,8 @@ def are_many(image: Any, roi: Any) -> bool:
     if roi is None:
         return _are_pairs(image)
     if isinstance(roi, np.ndarray):
-        return roi.ndim == 2
+        # Two columns are the corners of one polygon.
+        return roi.ndim == 2 and roi.shape[1] != 2
     if isinstance(roi, list | tuple):
         return not any(isinstance(one, int | float | np.number) for one in roi)
     return isinstance(roi, Iterator)

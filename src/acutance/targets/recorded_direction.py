@@ -45,6 +45,11 @@ class RecordedDirection(ShortRepr):
         }
 
     @property
+    def rer_centre(self) -> str:
+        """About which centre RER is taken: "half" or "peak"; of older documents "half"."""
+        return str(self.document.get("rer_centre", "half"))
+
+    @property
     def mtf_nyquist(self) -> Estimate:
         """MTF at 0.5 cycles per pixel."""
         return self.numbers["mtf_nyquist"]

@@ -39,7 +39,7 @@ _MAX_PIXELS = 9_000_000
 _MIN_SIDE_PX = 8
 _MAX_GSD_ROUNDING = 0.05
 
-RoiLike = Region | Box | tuple[int, int, int, int] | None
+RoiLike = Region | Box | tuple[int, int, int, int] | Floats | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,7 +106,7 @@ def read_region(
     Parameters
     ----------
     image : Image or (rows, cols) array_like
-    roi : Region, Box, (row, col, height, width) or None
+    roi : Region, Box, (row, col, height, width), (n, 2) corners or None
         None reads the whole image.
     gsd_m : float or Gsd, optional
         Ground sampling distance in metres, instead of the image's own.
@@ -212,7 +212,7 @@ def stated_gsd(info: ImageInfo, limits: Limits) -> Check:
 
 
 def chosen_region(roi: Any) -> Region | Box:
-    """A region, a box, or the box of four numbers.
+    """A region, a box, the box of four numbers, or the polygon of an array of corners.
 
     Raises
     ------
@@ -243,6 +243,9 @@ def chosen_region(roi: Any) -> Region | Box:
             f"roi is {roi!r:.80}, which holds slices: give (row, column, height, width), of "
             "slices (start, start, stop - start, stop - start)"
         )
+    if np.ndim(roi) == 2 and np.shape(roi)[1] == 2:
+        # Corners as a survey of simulated edges has them.
+        return Region(np.asarray(roi))
     if len(numbers) != 4:
         raise RegionError(
             f"roi has {len(numbers)} numbers: give four, (row, column, height, width), in pixels"

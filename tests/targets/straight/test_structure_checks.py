@@ -1,5 +1,7 @@
 """Structure of the scene that is no sensor's blur: found where it is, and only there."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -87,6 +89,16 @@ def test_a_weak_slope_across_the_edge_is_seen(slope, size):
         assert "both look alike here, and the intervals allow for either" in words
         # Dark is on the low side: a fall towards it goes the way that scattered light does.
         assert ("slopes against light" in words) == (slope < 0)
+
+
+def test_the_number_of_a_slope_against_scattered_light_stands_in_its_sentence():
+    image, truth = an_edge(0, size=40)
+    s = truth.line.normal_distance(*np.indices(image.shape))
+    m = ac.measure_edge(image - 20.0 * s / 50)
+    found = next(one for one in m.checks if one.name == "gradient")
+    times = re.search(r"([\d.]+) times as steeply .*counts as 1 \+ ([\d.]+)", found.message)
+    assert times[1] == times[2]
+    assert 1 + float(times[2]) == pytest.approx(found.value, abs=0.051)
 
 
 def test_ringing_of_a_product_is_the_sensor_s_and_not_the_ground_s():

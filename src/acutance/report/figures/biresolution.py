@@ -11,7 +11,7 @@ from acutance.report.figures.curves import COLORS, axis_labels
 from acutance.report.figures.panel import Panel, on_axes, required
 from acutance.report.figures.pixels import draw_residual_map
 from acutance.report.labels import transfer_name
-from acutance.report.paper import BLUE, FAINT, INK, split_page
+from acutance.report.paper import BLUE, FAINT, INK
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -127,7 +127,8 @@ def _draw_residual(axes: Axes, measurement: BiresolutionMeasurement) -> None:
 def _draw_map(page: FigureBase, measurement: BiresolutionMeasurement) -> None:
     local = measurement.local
     name = "Ratio" if measurement.is_ratio else "MTF"
-    parts = split_page(page, 1, 4)
+    # Axes of one grid are equally large, be there a scale of colours beside them or not.
+    parts = page.subplots(1, 4, gridspec_kw={"wspace": 0.1})
     for part, axis in zip(parts, measurement.directions, strict=False):
         mtf, std = measurement.local_mtf_nyquist(axis)
         typical = float(np.nanmedian(std)) if np.isfinite(std).any() else float("nan")
@@ -138,18 +139,25 @@ def _draw_map(page: FigureBase, measurement: BiresolutionMeasurement) -> None:
             f"each ± {typical:.3f}",
             "viridis",
         )
-    _draw_shifts(parts[2].subplots(), local.shift_row_px, local.shift_col_px)
-    _draw_field(parts[3], local.residual, "Residual", "DN of the low image", "magma_r")
+    _draw_shifts(parts[2], local.shift_row_px, local.shift_col_px)
+    _draw_field(parts[3], local.residual, "Residual", "", "magma_r", "DN of the low image")
 
 
-def _draw_field(page: FigureBase, field: Floats, title: str, below: str, colors: str) -> None:
-    axes = page.subplots()
+def _draw_field(
+    axes: Axes, field: Floats, title: str, below: str, colors: str, unit: str = ""
+) -> None:
     shown = axes.imshow(np.ma.masked_invalid(field), cmap=colors, interpolation="nearest")
-    axes.figure.colorbar(shown, ax=axes, shrink=0.8)
+    axes.figure.colorbar(shown, ax=axes, shrink=0.8, label=unit)
+    axes.set(title=title, xlabel=below)
+    _frame(axes)
+
+
+def _frame(axes: Axes) -> None:
+    """A frame all around: regions are counted, and have no axis."""
     axes.grid(visible=False)
     axes.set_xticks([])
     axes.set_yticks([])
-    axes.set(title=title, xlabel=below)
+    axes.spines[["top", "right"]].set_visible(True)
 
 
 def _draw_shifts(axes: Axes, down: Floats, across: Floats) -> None:
@@ -160,12 +168,10 @@ def _draw_shifts(axes: Axes, down: Floats, across: Floats) -> None:
     if longest > 0:
         axes.quiver(
             cols[usable], rows[usable], across[usable], down[usable], angles="xy",
-            scale_units="xy", scale=longest / 0.9, color=BLUE, width=0.008,
+            scale_units="xy", scale=longest / 0.48, color=BLUE, width=0.008,
         )  # fmt: skip
     axes.set(
-        xlim=(-1, down.shape[1]), ylim=(down.shape[0], -1), aspect="equal",
+        xlim=(-0.5, down.shape[1] - 0.5), ylim=(down.shape[0] - 0.5, -0.5), aspect="equal",
         title="Local shifts", xlabel=f"longest {longest:.3f} low px",
     )  # fmt: skip
-    axes.grid(visible=False)
-    axes.set_xticks([])
-    axes.set_yticks([])
+    _frame(axes)

@@ -77,17 +77,18 @@ def _draw_directions(axes: Any, measurement: SceneMeasurement) -> None:
     for own, color in ((~ideal, FAINT), (ideal, BLUE)):
         axes.scatter(
             normal[own], value[own], s=8 if value.size < 1000 else 4, color=color, linewidths=0,
-            alpha=opacity, rasterized=value.size > 1000, zorder=3,
+            alpha=opacity, rasterized=value.size > 1000, zorder=2.1,
         )  # fmt: skip
     # Directions turn as in the image: rows go downwards.
     axes.set_theta_direction(-1)
     angle = np.radians(angle_deg)
     axes.fill_between(angle, np.maximum(low, 0.0), high, color=VERMILION, alpha=0.25, linewidth=0)
-    axes.plot(angle, mtf, color=VERMILION, linewidth=1.6, zorder=4)
+    axes.plot(angle, mtf, color=VERMILION, linewidth=1.6, zorder=2.3)
     axes.set_ylim(0.0, top)
     ticks = np.asarray(MaxNLocator(4).tick_values(0.0, top))
     axes.set_yticks(ticks[(ticks > 0) & (ticks < top)])
     axes.tick_params(axis="y", labelsize=7.5)
+    # The radius is read above the dots: labels of ticks are drawn at 2.5.
     axes.set_axisbelow(False)
     for label in axes.get_yticklabels():
         label.set_bbox({"facecolor": "white", "alpha": 0.75, "linewidth": 0, "pad": 0.6})

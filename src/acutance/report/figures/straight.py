@@ -15,7 +15,7 @@ from acutance.report.figures.curves import band_edges, curve_panels, draw_mtf
 from acutance.report.figures.panel import Panel, on_axes
 from acutance.report.figures.pixels import show_pixels
 from acutance.report.labels import word_estimate
-from acutance.report.paper import BLUE, FAINT, ORANGE, PURPLE, VERMILION
+from acutance.report.paper import BLUE, FAINT, ORANGE, PLUM, VERMILION
 from acutance.targets.straight.pulse_spectrum import zeros_cpp
 
 if TYPE_CHECKING:
@@ -233,7 +233,7 @@ def mark_zeros(axes: Axes, width_px: float) -> None:
     """Where the spectrum of a pulse of this width has its zeros, as thin dotted lines."""
     zeros = zeros_cpp(width_px, 0.99).tolist()
     for k, zero in enumerate(zeros, start=1):
-        axes.axvline(zero, color=PURPLE, linewidth=0.9, linestyle=":", zorder=1)
+        axes.axvline(zero, color=PLUM, linewidth=1.3, linestyle=":", zorder=1)
         if k == 1 or len(zeros) <= MAX_ZEROS_NAMED:
             # Beside it end the axes, or lies the line at Nyquist.
             on_left = zero > 0.93 or 0.45 < zero < 0.5
@@ -245,8 +245,8 @@ def mark_zeros(axes: Axes, width_px: float) -> None:
                 transform=axes.get_xaxis_transform(),
                 ha="right" if on_left else "left",
                 va="center",
-                color=PURPLE,
-                fontsize=7,
+                color=PLUM,
+                fontsize=9,
             )
 
 

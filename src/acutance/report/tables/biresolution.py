@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from acutance.report.html import Table
-from acutance.report.labels import format_number, transfer_name, word_estimate
+from acutance.report.labels import format_number, transfer_name, word_estimate, write_fixed
 
 if TYPE_CHECKING:
     from acutance.targets.pair import BiresolutionMeasurement
@@ -39,7 +39,7 @@ def _iterations_table(measurement: BiresolutionMeasurement) -> Table:
     rows = tuple(
         (
             str(i), format_number(step.residual), f"{step.change:.1e}" if i else "",
-            *(f"{value:.4f}" for value in (*step.shift_px, *step.variance_px2)),
+            *(write_fixed(value) for value in (*step.shift_px, *step.variance_px2)),
         )
         for i, step in enumerate(measurement.steps)
     )  # fmt: skip

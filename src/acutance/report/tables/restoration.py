@@ -161,6 +161,7 @@ def proof_table(proof: RestorationProof) -> Table:
     rows = tuple(
         (
             one.name, "" if one.normal_deg is None else f"{one.normal_deg:.1f}",
+            MISSING if one.designed is None else _in_words(one.designed),
             word_estimate(one.before).value_and_std, word_estimate(one.predicted).value_and_std,
             word_estimate(one.after).value_and_std,
             word_estimate(one.difference).value_and_std, write_fixed(one.deviations, 1),
@@ -172,11 +173,12 @@ def proof_table(proof: RestorationProof) -> Table:
     alerts = {i for i, one in enumerate(proof.edges) if abs(one.deviations) > proof.limit}
     return Table(
         (
-            "Edge", "Normal [°]", "MTF at Nyquist before", "predicted", "measured", "difference",
-            "in deviations", "Overshoot after", "SNR before/after",
+            "Edge", "Normal [°]", "MTF at Nyquist designed for", "before", "predicted", "measured",
+            "difference", "in deviations", "Overshoot after", "SNR before/after",
         ),
-        rows, "lrrrrrrrr", alerts=frozenset(alerts), title="Edges before and after",
+        rows, "lrrrrrrrrr", alerts=frozenset(alerts), title="Edges before and after",
         notes=(
+            "Designed for: MTF along the edge's normal of the sensor that the filter was made for. "
             "Predicted: the edge before, times the filter's transfer along its normal. The "
             "deviation of the difference allows for what both measurements share.",
         ),
@@ -196,6 +198,11 @@ def niirs_table(found: Niirs) -> Table:
     gsd = format_number(own.gsd_m)
     if found.measured_gsd_m is not None:
         gsd += f" (stated; the document's own is {format_number(found.measured_gsd_m)} m)"
+    # Version 5 is of images that were not sharpened, and has neither of them.
+    of_sharpening = (
+        ("overshoot H", format_number(own.giqe_h)),
+        ("noise gain", format_number(own.noise_gain)),
+    )
     rows = (
         (f"NIIRS (GIQE {found.version})", word_estimate(found).value_and_std),
         ("95 % interval", f"{write_fixed(low, 2)} … {write_fixed(high, 2)}"),
@@ -205,8 +212,7 @@ def niirs_table(found: Niirs) -> Table:
         ("RER across, along", f"{own.rer_across:.4f}, {own.rer_along:.4f}"),
         ("SNR", format_number(own.snr)),
         ("elevation [°]", format_number(own.elevation_deg)),
-        ("overshoot H", format_number(own.giqe_h)),
-        ("noise gain", format_number(own.noise_gain)),
+        *(of_sharpening if found.version != 5 else ()),
     )
     notes = tuple(str(note) for note in found.notes)
     return Table(("Number", "Value"), rows, "lr", title="Interpretability", notes=notes)

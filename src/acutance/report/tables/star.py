@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from acutance.report.html import Table
-from acutance.report.labels import word_estimate
+from acutance.report.labels import word_estimate, write_fixed
 
 if TYPE_CHECKING:
     from acutance.targets.periodic import StarMeasurement
@@ -44,7 +44,7 @@ def _star_table(measurement: StarMeasurement) -> Table:
 def _rings_table(measurement: StarMeasurement) -> Table:
     rings = measurement.rings
     rows = tuple(
-        (f"{measurement.star.radius_at(f):.1f}", f"{f:.3f}", f"{m:.4f}", f"{s:.4f}")
+        (f"{measurement.star.radius_at(f):.1f}", f"{f:.3f}", write_fixed(m), write_fixed(s))
         for f, m, s in zip(
             rings.freq_cpp.tolist(), rings.modulation.tolist(), rings.std.tolist(), strict=True
         )

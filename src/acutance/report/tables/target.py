@@ -21,8 +21,20 @@ from acutance.report.tables.measurement import headline_table
 if TYPE_CHECKING:
     from acutance.targets import TargetResult
 
-__all__ = ["edges_table", "group_rows", "means_headline", "notes_on_means", "target_tables"]
+__all__ = [
+    "HOW_COUNTED",
+    "edges_table",
+    "group_rows",
+    "means_headline",
+    "notes_on_means",
+    "target_tables",
+]
 
+HOW_COUNTED = (
+    "Edges are counted from 1; the lists of the JSON document count from 0: edge 1 is "
+    "measurements[0]."
+)
+"""Whoever copies a number from a table into a script has to know."""
 MAIN = ("mtf_nyquist", "rer", "fwhm_px")
 
 
@@ -62,7 +74,8 @@ def edges_table(result: TargetResult[Any]) -> Table:
     labels = (metric_words(name).label_with_unit for name in MAIN)
     line = ("Edge", "Row", "Column", "Direction", "Angle [°]", "SNR")
     columns = (*line, *labels, "Verdict", "Checks")
-    return Table(columns, tuple(rows), "rrrlrrrrrll", alerts=frozenset(alerts), title="Edges")
+    return Table(columns, tuple(rows), "rrrlrrrrrll", alerts=frozenset(alerts), title="Edges",
+                 notes=(HOW_COUNTED,) if rows else ())  # fmt: skip
 
 
 def _means_table(result: TargetResult[Any]) -> Table:

@@ -75,7 +75,7 @@ def measure_biresolution(
     ratio : float, optional
         GSD of the low image over that of the high one; without it, that of the geotransforms or
         of the shapes.
-    roi : Region, Box, (row, col, height, width) or None
+    roi : Region, Box, (row, col, height, width), (n, 2) corners or None
         Where to look, in pixels of the low image.
     reference_mtf : Sensor, Measurement, TargetResult, Record, MeasuredCurves, Mtf or float
         The high image's own MTF, in its own pixels; a number is its value at Nyquist. Without it

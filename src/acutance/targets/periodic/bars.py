@@ -48,7 +48,7 @@ def measure_bars(
     Parameters
     ----------
     image : Image or (rows, cols) array_like
-    roi : Region, Box, (row, col, height, width) or None
+    roi : Region, Box, (row, col, height, width), (n, 2) corners or None
         A region that holds the groups and some background around each; None is the whole image.
     gsd_m : float or Gsd, optional
         Ground sampling distance in metres, instead of the image's own.

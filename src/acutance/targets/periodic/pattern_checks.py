@@ -43,7 +43,7 @@ def contrast_snr(snr: float, whose: str, limits: Limits) -> Check:
 def level(otf: FittedOtf, contrast: str, limits: Limits) -> Check:
     """Whether the contrast before the sensor is known."""
     relative = otf.level_std / abs(otf.level)
-    found = f"{contrast} before the sensor is known to {relative:.1%}"
+    found = f"{contrast} before the sensor is known to {100 * relative:.1f} %"
     return answer("level", relative, found, limits)
 
 
@@ -126,7 +126,7 @@ def saturation(
 ) -> Check:
     """Whether pixels (n,) are clipped."""
     clipped = clipped_share(value, saturation_level, noisy=snr <= QUIET_SNR)
-    found = f"{clipped:.1%} of {pixels} are clipped at an end of the scale"
+    found = f"{100 * clipped:.1f} % of {pixels} are clipped at an end of the scale"
     return answer("saturation", clipped, found, limits)
 
 
@@ -141,4 +141,6 @@ def correlated_noise(correlation: Correlation, snr: float, limits: Limits, *, ad
 def outliers(residual: Floats, noise: float, otf: FittedOtf, target: str, limits: Limits) -> Check:
     """Whether residuals (n,) are those of noise."""
     share = outlier_share(residual, max(noise, abs(otf.level) / QUIET_SNR))
-    return answer("outliers", share, f"{share:.1%} of the pixels do not fit {target}", limits)
+    return answer(
+        "outliers", share, f"{100 * share:.1f} % of the pixels do not fit {target}", limits
+    )

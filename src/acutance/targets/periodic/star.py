@@ -45,7 +45,7 @@ def measure_star(
     Parameters
     ----------
     image : Image or (rows, cols) array_like
-    roi : Region, Box, (row, col, height, width) or None
+    roi : Region, Box, (row, col, height, width), (n, 2) corners or None
         A loose region around the star; None is the whole image.
     cycles : int or None, optional
         Periods in a full turn, also of a fan; None counts them.

@@ -91,7 +91,10 @@ def _sweep(solved: StarSolution, limits: Limits) -> Check:
 
 def _wave(solved: StarSolution, limits: Limits) -> Check:
     share = third_harmonic(solved)
-    found = f"{share:.1%} of the contrast is a third harmonic that the stated wave does not have"
+    found = (
+        f"{100 * share:.1f} % of the contrast is a third harmonic that the stated wave does not "
+        "have"
+    )
     return answer("wave", share, found, limits)
 
 

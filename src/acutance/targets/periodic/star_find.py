@@ -173,8 +173,8 @@ def _require_spokes(
     if strength[best] < MIN_STAR_STRENGTH:
         raise NoStarError(
             f"no star: about row {row:.1f}, column {col:.1f}, where the structure points to, "
-            f"spokes explain {strength[best]:.0%} of the rings at best; choose a region around "
-            "the star, or give its centre"
+            f"spokes explain {100 * strength[best]:.0f} % of the rings at best; choose a region "
+            "around the star, or give its centre"
         )
 
 

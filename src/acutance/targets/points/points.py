@@ -169,7 +169,7 @@ def measure_points(
     Parameters
     ----------
     image : Image or (rows, cols) array_like
-    roi : Region, Box, (row, col, height, width) or None
+    roi : Region, Box, (row, col, height, width), (n, 2) corners or None
     positions : (n, 2) array_like, optional
         Approximate places (row, col) in the whole image, to 1.5 px; found in the image without.
     surveyed : (n, 2) array_like, optional

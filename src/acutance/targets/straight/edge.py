@@ -95,7 +95,7 @@ def measure_edge(
     image : Image or (rows, cols) array_like
         From `acutance.open_image`, or pixels in memory; NaN, infinite and masked
         pixels are not used.
-    roi : Region, Box, (row, col, height, width) or None
+    roi : Region, Box, (row, col, height, width), (n, 2) corners or None
         A loose region is normal: the edge is found in it, and its usable pixels are kept.
     gsd_m : float or Gsd, optional
         Ground sampling distance in metres, instead of the image's own.

@@ -45,8 +45,9 @@ _SHARED_WORDS: Final = (
 )
 
 
+# An array of corners can be iterated over, too; it is one region.
 @overload
-def measure_edges(
+def measure_edges(  # type: ignore[overload-overlap]
     image: Image | ArrayLike | ImageRegions,
     roi: Iterable[RoiLike],
     *,

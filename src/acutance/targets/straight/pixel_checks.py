@@ -180,9 +180,10 @@ def _gradient_words(against: float, along: float) -> str:
     if along > 1 + against or not against:
         how = f"{along:.1f} times as steeply as light that an aperture scatters at most does"
     else:
+        # The check's number is found in its own sentence.
         how = (
             f"against light that an aperture scatters, {against:.1f} times as steeply as that does "
-            "at most"
+            f"at most, which counts as 1 + {against:.1f}"
         )
     return f"far from the target the background slopes {how}"
 

@@ -84,7 +84,7 @@ def measure_pulse(
     Parameters
     ----------
     image : Image or (rows, cols) array_like
-    roi : Region, Box, (row, col, height, width) or None
+    roi : Region, Box, (row, col, height, width), (n, 2) corners or None
         A loose region is normal: the pulse is found in it, and its usable pixels are kept.
     width_px, width_m : float, optional
         Width of the target along its normal, in pixels or in metres (which needs a GSD); without
