@@ -1,6 +1,7 @@
 """Plans: bounds below simulations, and the questions of a team answered."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -67,6 +68,22 @@ def test_of_several_widths_the_best_is_planned_and_named():
     assert "3 px wide" in plan.finding("expected_mtf_nyquist").text
     single = plan_target(PlanOptions(target="pulse", widths_px=(1.5,), draws=0), ALONE)
     assert "planned_width_px" not in [found.name for found in single.findings]
+
+
+def test_where_another_design_errs_less_the_plan_is_told_beside_it():
+    narrow = PlanOptions(target="pulse", widths_px=(1.5,), angles_deg=(2.0,), draws=0)
+    plan = plan_target(narrow, ALONE)
+    widths = plan.table.where(varied="width")["mtf_nyquist_free"]
+    excess = plan.finding("expected_mtf_nyquist").value / widths.min() - 1
+    said = plan.finding("best_target_width_px").text
+    assert excess > 0.1
+    assert said.endswith(f"; that of the plan is {100 * excess:.0f} % larger")
+    assert (
+        "the plan"
+        not in plan_target(replace(narrow, widths_px=(3.0,)), ALONE)
+        .finding("best_target_width_px")
+        .text
+    )
 
 
 def test_a_width_in_metres_over_the_gsd_is_no_second_width():

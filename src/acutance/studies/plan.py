@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 
 from acutance.curves import Estimate
+from acutance.curves.grid import Floats
 from acutance.errors import OptionError, TargetError
 from acutance.optics import Sensor, preset
 from acutance.simulate import edge, pulse
@@ -296,10 +297,20 @@ def _findings(options: PlanOptions, table: Table) -> tuple[Finding, ...]:
                 f"best_{column}",
                 best,
                 f"{name}: {best:.3g} {unit}{on_ground} has the smallest error; within "
-                f"{100 * (slack - 1):.0f} % of it: {good} {unit}",
+                f"{100 * (slack - 1):.0f} % of it: {good} {unit}{_beside_plan(expected, value, slack)}",
             )
         )
     return tuple(found)
+
+
+def _beside_plan(planned: float, errors: Floats, slack: float) -> str:
+    """Whether the plan is one of the good designs, where another has the smallest error."""
+    excess = planned / float(np.nanmin(errors)) - 1
+    if not excess > 0:
+        return ""
+    if 1 + excess <= slack:
+        return "; the plan is one of them: what is between them may be chance"
+    return f"; that of the plan is {100 * excess:.0f} % larger"
 
 
 def _rows_needed(accuracy: float, expected: float, rows: int) -> Finding:
