@@ -290,6 +290,7 @@ def _findings(options: PlanOptions, table: Table) -> tuple[Finding, ...]:
         value, choice = own[kind], own[column]
         best = float(choice[int(np.nanargmin(value))])
         good = ", ".join(f"{one:.3g}" for one in choice[value <= slack * np.nanmin(value)])
+        beside = _beside_plan(expected, value, slack)
         metres = float(own["target_width_m"][int(np.nanargmin(value))])
         on_ground = f" ({metres:.3g} m)" if name == "width" and math.isfinite(metres) else ""
         found.append(
@@ -297,7 +298,7 @@ def _findings(options: PlanOptions, table: Table) -> tuple[Finding, ...]:
                 f"best_{column}",
                 best,
                 f"{name}: {best:.3g} {unit}{on_ground} has the smallest error; within "
-                f"{100 * (slack - 1):.0f} % of it: {good} {unit}{_beside_plan(expected, value, slack)}",
+                f"{100 * (slack - 1):.0f} % of it: {good} {unit}{beside}",
             )
         )
     return tuple(found)
