@@ -66,14 +66,14 @@ def earlier_contents(database: Database, now: Mapping[str, str]) -> dict[str, li
         By path the SHA-256 of the file as it is.
     """
     found: dict[str, list[str]] = {}
-    paths = list(now)
+    paths, contents = list(now), set(now.values())
     for at in range(0, len(paths), _CHUNK):
         asked = select(images.c.path, images.c.content).where(
             images.c.path.in_(paths[at : at + _CHUNK]), images.c.content.is_not(None)
         )
         for path, content in database.read(partial(_pairs, asked=asked.distinct())):
             # A copy that took the name of another of these files is no earlier content.
-            if content not in now.values():
+            if content not in contents:
                 found.setdefault(path, []).append(content)
     return {path: sorted(found[path]) for path in now if path in found}
 
