@@ -2,6 +2,7 @@
 
 import numpy as np
 
+import acutance as ac
 from acutance.simulate import LandscapeOptions, landscape
 
 BARE = {
@@ -30,3 +31,14 @@ def small_scene(sensor, size_px, soft, seed):
         rng=np.random.default_rng(seed),
     )  # fmt: skip
     return image + np.random.default_rng((*seed, 1)).normal(0, 10.0, image.shape)
+
+
+def check_of_bare_ground(name, sensor, size_px, density_per_mpx, seed):
+    """A scan of bare ground at SNR 100 under a sensor, and one of its checks."""
+    image, _ = landscape(
+        sensor, shape=(size_px, size_px), snr=100,
+        options=bare_ground(density_per_mpx=density_per_mpx), rng=np.random.default_rng(seed),
+    )  # fmt: skip
+    scene = ac.scan_scene(image)
+    (check,) = (one for one in scene.checks if one.name == name)
+    return scene, check

@@ -1,11 +1,9 @@
 """A sensor twice as sharp across as along is seldom one: borders of a direction are soft alike."""
 
-import numpy as np
 import pytest
-from bare_ground import bare_ground
+from bare_ground import check_of_bare_ground
 
-import acutance as ac
-from acutance import optics, simulate
+from acutance import optics
 
 
 @pytest.mark.parametrize(
@@ -18,12 +16,8 @@ def test_a_scan_says_when_its_axes_surely_differ(smear_px, size_px, word):
     Where there are edges enough the parts of the scene were asked, and agree about it.
     """
     blocks = [optics.Gaussian(0.35), optics.Detector(), optics.Smear(smear_px, "along")]
-    image, _ = simulate.landscape(
-        optics.Sensor(blocks), shape=(size_px, size_px), snr=100,
-        options=bare_ground(density_per_mpx=120), rng=np.random.default_rng(7),
-    )  # fmt: skip
-    scene = ac.scan_scene(image)
-    (check,) = (one for one in scene.checks if one.name == "axes_differ")
+    sensor = optics.Sensor(blocks)
+    scene, check = check_of_bare_ground("axes_differ", sensor, size_px, 120, seed=7)
     assert check.passed == (word == "good")
     assert scene.verdict.word == word
     if word == "doubtful":
