@@ -195,3 +195,16 @@ def test_on_a_day_far_from_the_images_no_number_of_images_is_told() -> None:
     assert "would tell" not in found.summary
     inside = check_requirement(at_least(0.1, on="2023-01-01"), made)
     assert (inside.word, inside.nearest) == ("cannot be told yet", None)
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [("minimum", '"0.2"'), ("minimum", "true"), ("minimum", "nan"), ("window_days", '"365"'),
+     ("confidence", '"0.9"')],
+)  # fmt: skip
+def test_a_number_is_no_text(tmp_path: Path, key: str, value: str) -> None:
+    lines = {"metric": '"rer"', "minimum": "0.4"} | {key: value}
+    path = tmp_path / "spec.toml"
+    path.write_text("\n".join(["[[requirement]]", *map(" = ".join, lines.items())]))
+    with pytest.raises(ac.OptionError, match=rf"requirement 1, {key}: input should be a .*number"):
+        read_specification(path)

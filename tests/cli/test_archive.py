@@ -89,7 +89,7 @@ def test_old_rows_are_counted(acutance, campaign):
 
 def test_one_is_shown(acutance, campaign, measured):
     shown = acutance("archive", "show", campaign, "1").stdout
-    for part in ("mtf_nyquist", "band 1, rows 0–", "GSD 0.7 m", "° to the grid, measured 20"):
+    for part in ("MTF at Nyquist", "band 1, rows 0–", "GSD 0.7 m", "° to the grid, measured 20"):
         assert part in shown
     assert "acquired  2026-05-01\n" in shown
     document = json.loads(acutance("archive", "show", campaign, "1", "--json").stdout)

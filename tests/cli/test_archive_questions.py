@@ -32,7 +32,7 @@ def test_a_trend_in_words(acutance, place):
     done = acutance("archive", "trend", place, "--metric", "rer", *ONE, "--limit", "0.35",
                     "--event", "2014-02-01=refocus")  # fmt: skip
     assert done.exit_code == 0
-    for part in ("rer of KOMPSAT-3, across", "drift a year", "2014-02-01 refocus",
+    for part in ("RER of KOMPSAT-3, across", "drift a year", "2014-02-01 refocus",
                  "The sensor's mean does not fall below 0.35"):  # fmt: skip
         assert part in done.stdout
     done = acutance("archive", "trend", place, "--metric", "rer", *ONE)

@@ -9,13 +9,12 @@ import pytest
 import acutance as ac
 from acutance import simulate
 from acutance.curves import METRICS, Estimate
+from acutance.curves.metric_words import METRIC_WORDS, metric_words
 from acutance.report import page, text
 from acutance.report.labels import (
-    METRIC_WORDS,
     describe_image,
     flatten_options,
     format_number,
-    metric_words,
     shorten_name,
     title_of,
     word_estimate,

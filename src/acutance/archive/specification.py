@@ -24,7 +24,7 @@ import os
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
@@ -36,6 +36,8 @@ from acutance.raster.document_faults import document_faults
 __all__ = ["Requirement", "Specification", "read_specification"]
 
 Names = str | list[str]
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+"""A number of the file, no text of one and no true or false."""
 
 
 class Requirement(BaseModel):
@@ -66,8 +68,8 @@ class Requirement(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     metric: str
-    minimum: float | None = Field(None, allow_inf_nan=False)
-    maximum: float | None = Field(None, allow_inf_nan=False)
+    minimum: Number | None = None
+    maximum: Number | None = None
     name: str = ""
     sensor: Names | None = None
     level: Names | None = None
@@ -77,10 +79,10 @@ class Requirement(BaseModel):
     target: Names | None = None
     kind: Names | None = None
     method: Names | None = None
-    confidence: float = Field(0.95, gt=0.5, lt=1)
+    confidence: Number = Field(0.95, gt=0.5, lt=1)
     since: datetime.date | None = None
     until: datetime.date | None = None
-    window_days: float | None = Field(None, gt=0)
+    window_days: Number | None = Field(None, gt=0)
     on: datetime.date | None = None
     verdict: Literal["good", "usable", "doubtful", "invalid"] = "usable"
 

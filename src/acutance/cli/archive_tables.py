@@ -147,19 +147,14 @@ def _survey_words(record: Record) -> str | None:
 
 
 def _record_lines(record: Record) -> Iterable[str]:
-    from acutance.curves import METRICS
     from acutance.report.labels import title_of
-    from acutance.report.text import align_columns
+    from acutance.report.tables.measurement import numbers_table
+    from acutance.report.text import table_text
 
     yield title_of(record)
     yield f"  {_measured_words(record)}"
     yield f"  {record.verdict}"
-    numbers = {name: one.numbers for name, one in record.directions.items()}
-    rows = [
-        (metric, *(str(found.get(metric, _UNKNOWN)) for found in numbers.values()))
-        for metric in METRICS
-    ]
-    yield align_columns([("", *numbers), *rows], "l" + "r" * len(numbers))
+    yield f"\n{table_text(numbers_table(record), drop_last=1)}\n"
 
 
 def _measured_words(record: Record) -> str:

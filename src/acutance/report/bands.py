@@ -6,11 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from acutance.curves.metric_words import metric_words
 from acutance.report.comparison import Comparison
 from acutance.report.figures.comparison import comparison_figure
 from acutance.report.html import Plate, Section, Table, Verdict, render_page
 from acutance.report.json import document
-from acutance.report.labels import describe_image, metric_words, provenance, word_estimate
+from acutance.report.labels import describe_image, provenance, word_estimate
 from acutance.report.page import sections, verdict_of
 from acutance.report.requirements import Required, required_lines, required_verdicts
 from acutance.report.text import table_text

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from acutance.archive.counted import counted
 from acutance.archive.dates import as_utc
 from acutance.curves.grid import Floats
+from acutance.curves.metric_words import metric_words
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 
@@ -117,7 +118,8 @@ class Series(ShortRepr):
     @property
     def title(self) -> str:
         """Metric and what was measured."""
-        return f"{self.metric} of {self.name}" if self.name else self.metric
+        label = metric_words(self.metric).label
+        return f"{label} of {self.name}" if self.name else label
 
     def of(self, rows: NDArray[np.bool_]) -> Series:
         """The measurements of a mask."""

@@ -26,6 +26,7 @@ from acutance.archive.trends.words import trend_text
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.curves.metric_bounds import limit_fault, lowest_of
+from acutance.curves.metric_words import metric_words
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 from acutance.targets.document_fields import require_document
@@ -111,7 +112,8 @@ class Trend(ShortRepr):
     @property
     def title(self) -> str:
         """Metric and what was measured."""
-        return f"{self.metric} of {self.name}" if self.name else self.metric
+        label = metric_words(self.metric).label
+        return f"{label} of {self.name}" if self.name else label
 
     @property
     def first(self) -> datetime.date:

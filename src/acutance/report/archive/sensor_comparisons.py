@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 from acutance.archive.comparison_margin import MARGIN
 from acutance.archive.comparisons import compare_groups
 from acutance.curves import MAIN_NUMBERS
+from acutance.curves.metric_words import METRIC_WORDS
 from acutance.errors import OptionError
 from acutance.report.archive.wording import percent, with_minus
 from acutance.report.html import Table
-from acutance.report.labels import METRIC_WORDS, MISSING
+from acutance.report.labels import MISSING
 
 if TYPE_CHECKING:
     from acutance.archive.comparisons import Difference, GroupComparison

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal
 from acutance.archive import Archive
 from acutance.archive.requirement_selection import asked_of, asks_nothing
 from acutance.archive.specification import read_specification
+from acutance.curves.metric_words import METRIC_WORDS
 from acutance.errors import NothingSelectedError, OptionError
 from acutance.report.archive.gsd_bands import with_gsd_bands
 from acutance.report.archive.sensor_comparisons import (
@@ -29,7 +30,7 @@ from acutance.report.archive.sensor_tables import (
 from acutance.report.archive.trend_page import trend_plate, trend_verdict
 from acutance.report.archive.wording import with_minus
 from acutance.report.html import Section, Verdict, render_page
-from acutance.report.labels import METRIC_WORDS, word_estimate
+from acutance.report.labels import word_estimate
 
 if TYPE_CHECKING:
     from acutance.archive.measurements import Measurements, Rejections

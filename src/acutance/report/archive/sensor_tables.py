@@ -15,10 +15,11 @@ from acutance.archive.requirement_answers import Answer, SpecificationCheck
 from acutance.archive.tables_by import MeasurementTable, table_by
 from acutance.archive.trends import Trend
 from acutance.curves import MAIN_NUMBERS
+from acutance.curves.metric_words import METRIC_WORDS, metric_words
 from acutance.report.archive.sensor_state import SeriesState
 from acutance.report.archive.wording import interval_words, rate_words, step_words
 from acutance.report.html import Table
-from acutance.report.labels import METRIC_WORDS, MISSING, metric_words, word_estimate
+from acutance.report.labels import MISSING, word_estimate
 from acutance.targets.conformity import written_probability
 
 __all__ = ["images_table", "means_tables", "rejected_table", "specification_table", "state_table"]

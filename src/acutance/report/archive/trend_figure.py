@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from acutance.curves.metric_words import METRIC_WORDS
 from acutance.report.archive.dates import axis_days, date_axis, day_on_axis
 from acutance.report.archive.wording import step_words
-from acutance.report.labels import METRIC_WORDS
 from acutance.report.paper import BLUE, FAINT, GREEN, INK, ORANGE, VERMILION, new_page, styled
 
 if TYPE_CHECKING:

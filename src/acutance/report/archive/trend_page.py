@@ -9,6 +9,7 @@ import numpy as np
 from acutance.archive.trends.series import date_of
 from acutance.archive.trends.words import new_drift_words, season_words, since_words
 from acutance.curves import Estimate
+from acutance.curves.metric_words import METRIC_WORDS
 from acutance.report.archive.trend_figure import are_bad, trend_figure
 from acutance.report.archive.wording import (
     interval_words,
@@ -20,7 +21,7 @@ from acutance.report.archive.wording import (
     with_minus,
 )
 from acutance.report.html import Plate, Section, Table, Verdict, render_page
-from acutance.report.labels import METRIC_WORDS, MISSING, word_estimate
+from acutance.report.labels import MISSING, word_estimate
 
 if TYPE_CHECKING:
     from acutance.archive.trends import EventEffect, Trend

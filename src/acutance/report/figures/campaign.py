@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from acutance.curves.metric_words import metric_words
 from acutance.report.figures.curves import TWO_SIDED_95, band_edges, mark_frequencies
 from acutance.report.figures.pixels import show_pixels
 from acutance.report.figures.scene import scene_panels
 from acutance.report.figures.straight import draw_esf, draw_prf
-from acutance.report.labels import metric_words
 from acutance.report.paper import (
     BLUE,
     FAINT,

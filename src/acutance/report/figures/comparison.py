@@ -9,16 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from acutance.curves import Estimate
+from acutance.curves.metric_words import metric_words
 from acutance.report.figures.curves import band_edges, mark_frequencies
 from acutance.report.figures.straight import TOP_BESIDE_ZEROS, draw_target, mark_zeros
 from acutance.report.figures.writing import write_grid
-from acutance.report.labels import (
-    MISSING,
-    describe_image,
-    metric_words,
-    title_of,
-    word_estimate,
-)
+from acutance.report.labels import MISSING, describe_image, title_of, word_estimate
 from acutance.report.paper import INK, NAME_WITH_ROOM, PALETTE, new_page, split_page, styled
 from acutance.report.tables.comparison import true_numbers
 from acutance.report.tables.measurement import numbers_of

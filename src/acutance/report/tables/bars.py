@@ -6,8 +6,9 @@ import math
 from typing import TYPE_CHECKING
 
 from acutance.curves import Estimate
+from acutance.curves.metric_words import metric_words
 from acutance.report.html import Table
-from acutance.report.labels import metric_words, word_estimate, write_fixed
+from acutance.report.labels import word_estimate, write_fixed
 
 if TYPE_CHECKING:
     from acutance.targets.periodic import BarsMeasurement

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from acutance.curves import METRICS, Estimate
+from acutance.curves.metric_words import metric_words
 from acutance.report.html import Table
-from acutance.report.labels import MISSING, metric_words, word_estimate, write_fixed
+from acutance.report.labels import MISSING, word_estimate, write_fixed
 
 if TYPE_CHECKING:
     from acutance.curves import Response

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from acutance.curves.metric_words import METRIC_WORDS, metric_words
 from acutance.report.html import Table
-from acutance.report.labels import METRIC_WORDS, MISSING, metric_words, word_estimate
+from acutance.report.labels import MISSING, word_estimate
 from acutance.report.tables.measurement import numbers_of
 
 if TYPE_CHECKING:

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from acutance.curves import Estimate
+from acutance.curves.metric_words import metric_words
 from acutance.report.check_words import write_found
 from acutance.report.html import Table
 from acutance.report.labels import (
     MISSING,
     flatten_options,
     measurement_metric_words,
-    metric_words,
     transfer_name,
     word_estimate,
 )

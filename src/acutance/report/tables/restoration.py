@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from acutance.curves.metric_words import metric_words
 from acutance.report.html import Table
-from acutance.report.labels import MISSING, format_number, metric_words, word_estimate, write_fixed
+from acutance.report.labels import MISSING, format_number, word_estimate, write_fixed
 
 if TYPE_CHECKING:
     from acutance.curves import Estimate

@@ -7,15 +7,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from acutance.curves import METRICS
+from acutance.curves.metric_words import metric_words
 from acutance.report.html import Table
-from acutance.report.labels import (
-    MISSING,
-    count_edges,
-    format_number,
-    metric_words,
-    word_estimate,
-    word_place,
-)
+from acutance.report.labels import MISSING, count_edges, format_number, word_estimate, word_place
 from acutance.report.tables.measurement import headline_table
 
 if TYPE_CHECKING:
