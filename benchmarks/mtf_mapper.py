@@ -18,8 +18,9 @@ import numpy as np
 from acutance.raster import write_geotiff
 
 PROGRAM = "mtf_mapper"
-_NYQUIST = 32
-"""Place of 0.5 c/px in its curves, whose step is 1/64 c/px."""
+STEP_CPP = 1 / 64
+_COL, _ROW, _ANGLE, _CURVE = 1, 2, 3, 13
+"""Columns of its table of edges (output version 2); the curve fills the rest."""
 
 
 @dataclass(frozen=True)
@@ -30,14 +31,23 @@ class MapperEdges:
     ----------
     processor_s : float
         Its processor time, the reading of the file included.
+    row, col : (n,) array
+        Middle of every edge.
     angle_deg : (n,) array
-        Acute angle between each edge and the nearer axis.
-    nyquist : (n,) array
+        Angle between each edge and the nearer axis.
+    curve : (n, m) array
+        MTF at multiples of `STEP_CPP`.
     """
 
     processor_s: float
+    row: np.ndarray
+    col: np.ndarray
     angle_deg: np.ndarray
-    nyquist: np.ndarray
+    curve: np.ndarray
+
+    def mtf(self, freq_cpp: float) -> np.ndarray:
+        """MTF of every edge at a multiple of `STEP_CPP`, (n,)."""
+        return np.asarray(self.curve[:, round(freq_cpp / STEP_CPP)])
 
 
 def mtf_mapper_edges(image: np.ndarray, *, bright_targets: bool) -> MapperEdges | None:
@@ -55,9 +65,12 @@ def mtf_mapper_edges(image: np.ndarray, *, bright_targets: bool) -> MapperEdges 
     with TemporaryDirectory() as folder:
         path = Path(folder) / "squares.tif"
         write_geotiff(path, image)
-        options = ["--sfr", "--invert"] if bright_targets else ["--sfr"]
+        command = [program, str(path), folder, "--edges", "--output-version", "2"]
+        command += ["--invert"] if bright_targets else []
         before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-        subprocess.run([program, str(path), folder, *options], check=True, capture_output=True)
+        subprocess.run(command, check=True, capture_output=True)
         spent = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
-        curves = np.loadtxt(Path(folder) / "raw_sfr_values.txt", ndmin=2)
-    return MapperEdges(spent, curves[:, 0], curves[:, 1 + _NYQUIST])
+        found = np.loadtxt(Path(folder) / "edge_sfr_values.txt", ndmin=2)
+    return MapperEdges(
+        spent, found[:, _ROW], found[:, _COL], np.abs(found[:, _ANGLE]), found[:, _CURVE:]
+    )

@@ -213,8 +213,8 @@ def mapper_time(
     """MTF Mapper's row of the times, for as many edges; none where it is not installed."""
     if mapper is None:
         return []
-    taken = mapper.processor_s / mapper.nyquist.size * count
-    name = f"MTF Mapper, {mapper.nyquist.size} sides found by itself, without deviations"
+    taken = mapper.processor_s / mapper.angle_deg.size * count
+    name = f"MTF Mapper, {mapper.angle_deg.size} sides found by itself, without deviations"
     return [(name, taken, f"{taken / plain:.2f}")]
 
 
@@ -222,7 +222,7 @@ def mapper_accuracy(mapper: MapperEdges | None) -> list[list[str]]:
     """MTF Mapper's row of the accuracies."""
     if mapper is None:
         return []
-    return [accuracy_row("MTF Mapper", mapper.nyquist - true_nyquist(mapper.angle_deg), None)]
+    return [accuracy_row("MTF Mapper", mapper.mtf(0.5) - true_nyquist(mapper.angle_deg), None)]
 
 
 def _verdict(image: np.ndarray) -> Callable[[], Any]:
