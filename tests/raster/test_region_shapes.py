@@ -130,3 +130,16 @@ def test_a_region_does_not_follow_the_array_it_was_made_from():
     assert region.box((20, 20)).row == 0
     with pytest.raises(ValueError, match="read-only"):
         region.vertices[0, 0] = 3
+
+
+@pytest.mark.parametrize("order", [(0, 1, 3, 2), (0, 2, 1, 3), (1, 3, 2, 0)])
+def test_four_corners_out_of_their_order_are_refused(order: tuple[int, ...]) -> None:
+    around = np.array([[2.0, 3.0], [2.0, 30.0], [25.0, 33.0], [20.0, 1.0]])
+    Region(around)
+    Region(around[::-1])
+    with pytest.raises(RegionError, match="cross: give its corners in the order"):
+        Region(around[list(order)])
+
+
+def test_four_corners_with_a_notch_are_a_region() -> None:
+    Region(np.array([[0.0, 0.0], [0.0, 30.0], [30.0, 30.0], [10.0, 20.0]]))

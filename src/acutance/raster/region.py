@@ -136,7 +136,8 @@ class Region(ShortRepr):
     Raises
     ------
     RegionError
-        If an outline has fewer than three corners, no area, or a coordinate that is not finite.
+        If an outline has fewer than three corners, no area, a coordinate that is not finite, or four
+        corners whose sides cross: two triangles instead of the four-sided figure that is meant.
     """
 
     vertices: Floats
@@ -227,8 +228,24 @@ def _outline(vertices: ArrayLike) -> Floats:
         raise RegionError(
             "the corners of an outline lie on one line, so it has no inside: draw it again"
         )
+    if len(corners) == 4 and (_cross(*corners) or _cross(*np.roll(corners, -1, axis=0))):
+        listed = ", ".join(f"({row:g}, {col:g})" for row, col in corners)
+        raise RegionError(
+            f"two sides of the outline {listed} (row, col) cross: give its corners in the order "
+            "in which one walks around it"
+        )
     corners.setflags(write=False)
     return corners
+
+
+def _cross(a: Floats, b: Floats, c: Floats, d: Floats) -> bool:
+    """Whether the side from a to b crosses that from c to d."""
+    return _turn(a, b, c) * _turn(a, b, d) < 0 and _turn(c, d, a) * _turn(c, d, b) < 0
+
+
+def _turn(a: Floats, b: Floats, c: Floats) -> float:
+    """Twice the area of a triangle, negative where it is walked around the other way."""
+    return float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
 
 
 def _inside(outline: Floats, box: Box) -> NDArray[np.bool_]:
