@@ -136,8 +136,8 @@ class Region(ShortRepr):
     Raises
     ------
     RegionError
-        If an outline has fewer than three corners, no area, a coordinate that is not finite, or four
-        corners whose sides cross: two triangles instead of the four-sided figure that is meant.
+        If an outline has fewer than three corners, no area, a coordinate that is not finite, or
+        four corners whose sides cross: two triangles instead of the figure that is meant.
     """
 
     vertices: Floats
