@@ -19,6 +19,8 @@ from acutance.raster import write_geotiff
 
 PROGRAM = "mtf_mapper"
 STEP_CPP = 1 / 64
+_NOTHING_FOUND = 4
+"""Its exit code where it finds no square."""
 _COL, _ROW, _ANGLE, _CURVE = 1, 2, 3, 13
 """Columns of its table of edges (output version 2); the curve fills the rest."""
 
@@ -68,9 +70,13 @@ def mtf_mapper_edges(image: np.ndarray, *, bright_targets: bool) -> MapperEdges 
         command = [program, str(path), folder, "--edges", "--output-version", "2"]
         command += ["--invert"] if bright_targets else []
         before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-        subprocess.run(command, check=True, capture_output=True)
+        done = subprocess.run(command, capture_output=True)
         spent = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
-        found = np.loadtxt(Path(folder) / "edge_sfr_values.txt", ndmin=2)
+        if done.returncode == _NOTHING_FOUND:
+            found = np.empty((0, _CURVE + round(0.5 / STEP_CPP) + 1))
+        else:
+            done.check_returncode()
+            found = np.loadtxt(Path(folder) / "edge_sfr_values.txt", ndmin=2)
     return MapperEdges(
         spent, found[:, _ROW], found[:, _COL], np.abs(found[:, _ANGLE]), found[:, _CURVE:]
     )

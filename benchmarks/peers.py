@@ -27,7 +27,7 @@ from acutance.targets.straight.published import Iso12233Options, SdsuOptions
 SNRS = (50.0, 100.0, 200.0)
 SIDE_PX, PITCH_PX, REGION_PX, REACH_PX = 60, 130, 60, 60
 SQUARES_ACROSS = 4
-DARK, BRIGHT = 20000.0, 40000.0
+DARK, BRIGHT = 12000.0, 42000.0
 FREQS_CPP = (0.25, 0.5)
 METHODS = {
     "spline": EdgeOptions(),

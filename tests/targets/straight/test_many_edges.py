@@ -16,6 +16,7 @@ from acutance.simulate import site
 from acutance.targets.straight.many_edges import (
     TargetResult,
     _border,
+    _chance,
     _shared,
     _weighted_mean,
     combine_edges,
@@ -103,6 +104,26 @@ def test_weighted_mean_and_chi_square():
     assert agreeing.std == pytest.approx(0.1 / math.sqrt(2))
     common, _ = _weighted_mean([Estimate(1.0, 0.1), Estimate(1.01, 0.1)], np.full(2, 0.5))
     assert common.std == pytest.approx(0.1 * math.sqrt(0.25 + 0.5))
+
+
+@pytest.mark.parametrize("common", [0.0, 0.5, 0.9])
+def test_what_is_common_to_all_does_not_hide_that_they_differ(common):
+    """Chi-square of the whole deviations was below .05 in 5, .2 and 0 % of these."""
+    rng = np.random.default_rng(0)
+    chances = []
+    for _ in range(1000):
+        own = math.sqrt(1 - common) * rng.normal(size=4)
+        value = 10 + math.sqrt(common) * rng.normal() + own
+        _, found = _weighted_mean([Estimate(float(one), 1.0) for one in value], np.full(4, common))
+        chances.append(_chance(found, 3))
+    assert np.mean(np.array(chances) < 0.05) == pytest.approx(0.05, abs=0.02)
+    assert np.mean(chances) == pytest.approx(0.5, abs=0.03)
+
+
+def test_numbers_with_nothing_of_their_own_cannot_disagree():
+    mean, found = _weighted_mean([Estimate(1.0, 0.1), Estimate(1.3, 0.1)], np.ones(2))
+    assert math.isnan(found)
+    assert mean.std == pytest.approx(0.1)
 
 
 def test_numbers_at_zero_are_not_averaged_as_if_gaussian():

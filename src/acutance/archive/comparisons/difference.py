@@ -92,8 +92,9 @@ class Difference:
     def answer(self) -> Answer:
         """Differ: the 95 % interval does not hold 0. Agree: it lies within the margin.
 
-        One or two images that hold both do not show what an image does to one of them: the
-        interval is that of these images, and the answer that it cannot be told.
+        One or two images that hold both do not show what an image does to one of them, nor does
+        one image of each show how images scatter: the interval is that of these images, and the
+        answer that it cannot be told.
         """
         low, high = self.relative.interval(LEVEL)
         if self._is_of_few_images:
@@ -104,7 +105,9 @@ class Difference:
 
     @property
     def _is_of_few_images(self) -> bool:
-        return self.basis != "means" and self.images[0] < MIN_IMAGES
+        if self.basis == "means":
+            return max(self.images) < 2
+        return self.images[0] < MIN_IMAGES
 
     @property
     def sentence(self) -> str:
@@ -136,7 +139,8 @@ class Difference:
         if self.answer == "agree":
             return f"{pair} agree within {100 * self.margin:g} %{self._unit_words} ({ends})"
         if self._is_of_few_images:
-            these = "this image" if self.images[0] == 1 else "these images"
+            is_one = self.basis != "means" and self.images[0] == 1
+            these = "this image" if is_one else "these images"
             return f"whether {pair} differ cannot be told of so few images ({ends} in {these})"
         return f"whether {pair} differ cannot be told yet ({ends})"
 

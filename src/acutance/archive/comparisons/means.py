@@ -127,8 +127,8 @@ def _part_of_one_scatter(
 ) -> StdPart:
     """The deviation of a difference of levels and of a drift that have one scatter.
 
-    The lone image of a group is taken to scatter as those of the other do, or by what is stated
-    for it if that is more.
+    The images of the smaller group are taken to scatter as all do, or as they do by themselves if
+    that is more; a lone one by what is stated for it.
     """
     sizes = [one.size for one in images]
     if sizes == [1, 1]:
@@ -137,15 +137,27 @@ def _part_of_one_scatter(
     free = sum(sizes) - 2 - bool(drift.rate)
     if free < 1:
         return StdPart(math.nan)
-    pooled = sum(float(((one.value - one.value.mean()) ** 2).sum()) for one in images) / free
-    levels = sum(
-        max(pooled, float(one.variance[0]) if one.size == 1 else 0.0) / one.size for one in images
-    )
+    pooled = sum(float((_off(one.value) ** 2).sum()) for one in images) / free
     of_drift = drift.variance * years**2
-    # Both grow with the scatter, the drift less the more of it is the prior's.
-    doubt = (levels + drift.share * of_drift) ** 2 / free
-    variance = levels + of_drift
+    small, large = sorted(images, key=lambda one: one.size)
+    few, degrees = _scatter_of_few(small) if small.size < large.size else (0.0, math.inf)
+    level, other = max(few, pooled) / small.size, pooled / large.size
+    # All grow with the scatter, the drift less the more of it is the prior's.
+    by_all = other + drift.share * of_drift
+    if few > pooled:
+        doubt = level**2 / degrees + by_all**2 / free
+    else:
+        doubt = (level + by_all) ** 2 / free
+    variance = level + other + of_drift
     return StdPart(math.sqrt(variance), variance**2 / doubt if doubt > 0 else math.inf)
+
+
+def _scatter_of_few(images: ImageMeans) -> tuple[float, float]:
+    """The variance that a small group shows by itself, or states for one, and its degrees."""
+    if images.size == 1:
+        return float(images.variance[0]), math.inf
+    free = images.size - 1
+    return float((_off(images.value) ** 2).sum()) / free, free
 
 
 def _spent_degrees(images: tuple[ImageMeans, ImageMeans]) -> tuple[float, float]:

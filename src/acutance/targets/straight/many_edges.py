@@ -291,9 +291,10 @@ def _best_and_others(
 
 
 def _weighted_mean(numbers: Sequence[Estimate], common: Floats) -> tuple[Estimate, float]:
-    """Mean weighted by 1 / std^2, and chi-square about it; the Birge ratio widens the std.
+    """Mean weighted by 1 / std^2, and chi-square; the Birge ratio widens the std.
 
-    Of every variance a part is common to all, (n,).
+    Of every variance a part is common to all, (n,): it cannot make the numbers differ, so that
+    chi-square is that of the other part.
     """
     value = np.array([number.value for number in numbers])
     std = np.array([number.std for number in numbers])
@@ -304,10 +305,18 @@ def _weighted_mean(numbers: Sequence[Estimate], common: Floats) -> tuple[Estimat
         return Estimate(*_plain_mean(value, std), lowest), math.nan
     weight = std**-2 / np.sum(std**-2)
     mean = float(weight @ value)
-    scatter = float(np.sum(((value - mean) / std) ** 2))
+    scatter = _chi_square(value, std * np.sqrt(1 - common))
     freedom = len(numbers) - 1
-    widened = max(1.0, math.sqrt(scatter / freedom)) if freedom else 1.0
+    widened = math.sqrt(scatter / freedom) if freedom and scatter > freedom else 1.0
     return Estimate(mean, std_of_mean(weight, std, common, widened), lowest), scatter
+
+
+def _chi_square(value: Floats, own_std: Floats) -> float:
+    """Of numbers about their mean; nan where one has no deviation of its own to judge by."""
+    if not (own_std > 0).all():
+        return math.nan
+    mean = float(np.average(value, weights=own_std**-2))
+    return float(np.sum(((value - mean) / own_std) ** 2))
 
 
 def _plain_mean(value: Floats, std: Floats) -> tuple[float, float]:
