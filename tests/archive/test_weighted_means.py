@@ -71,6 +71,28 @@ def test_probability_belongs_to_the_interval() -> None:
     low, high = found.mean.interval()
     assert found.probability_below(low) == pytest.approx(0.025, abs=1e-4)
     assert found.probability_below(high) == pytest.approx(0.975, abs=1e-4)
+    for shared in (0.001, 0.03, 1.0):
+        found = weighted_mean([1.0, 1.2, 0.9, 1.1], 0.05, systematic_std=shared)
+        low, high = found.mean.interval()
+        assert found.probability_below(low) == pytest.approx(0.025, abs=0.003)
+        assert found.probability_below(high) == pytest.approx(0.975, abs=0.003)
+
+
+@pytest.mark.parametrize("shared", [0.5, 5.0])
+@pytest.mark.parametrize("count", [2, 3, 4, 10])
+def test_a_truth_at_the_limit_is_seldom_surely_below_it(count: int, shared: float) -> None:
+    """What measurements share is normal: by Student's t with two of them it was in 12 %."""
+    rng = np.random.default_rng(1)
+    draws, surely, held = 1000, 0, 0
+    for _ in range(draws):
+        value = rng.normal() * shared + rng.normal(size=count)
+        found = weighted_mean(value, np.ones(count), systematic_std=np.full(count, shared))
+        surely += found.probability_below(0.0) > 0.95
+        low, high = found.mean.interval()
+        held += low <= 0 <= high
+    noise = 3 * np.sqrt(0.05 * 0.95 / draws)
+    assert surely / draws < 0.05 + noise
+    assert held / draws > 0.95 - noise
 
 
 @pytest.mark.parametrize("value", [[], [1.0, np.nan]])

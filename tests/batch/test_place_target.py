@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from acutance.batch.find_line import edge_candidates
+from acutance.batch.find_line import edge_candidates, grown
 from acutance.batch.find_points import find_points
 from acutance.batch.place_target import NotHereError, place_target
 from acutance.errors import RegionError
-from acutance.raster import Geolocation, Gsd, Image
+from acutance.raster import Box, Geolocation, Gsd, Image
 from acutance.raster.surveyed_targets import targets_of
 
 
@@ -150,3 +150,14 @@ def test_what_is_not_found_is_told_the_deviation_that_counts(crs, name):
         find_points(placed(survey, image), image)
     with pytest.raises(RegionError, match=f"state a smaller {name}$"):
         placed(target(line, crs=crs, **{name: 1000}), image)
+
+
+@pytest.mark.parametrize("width", [12, 30, 100])
+def test_an_outline_grows_equally_on_every_side(width):
+    """A narrow one, too: its corners alone would move along the diagonal."""
+    plain = Image.from_array(np.zeros((200, 200)))
+    low, high = 100 - width / 2, 100 + width / 2
+    corners = [[low, 50], [high, 50], [high, 150], [low, 150], [low, 50]]
+    survey = target([corners], "Polygon", "pixel", position_std_px=5)
+    found = grown(place_target(survey, plain, None)).box(plain.shape)
+    assert found == Box(35, int(low) - 15, 130, width + 30)

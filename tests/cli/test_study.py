@@ -109,6 +109,17 @@ def test_a_pulse_is_planned_in_metres(acutance):
     assert set(table["varied"]) == {"plan", "rows", "angle", "width"}
 
 
+def test_a_width_in_metres_is_along_the_normal_where_pixels_are_not_square(acutance, tmp_path):
+    sensor = "gsd_m = 1.0\ngsd_along_m = 2.0\n[[block]]\nkind = 'Gaussian'\nsigma_px = 0.4\n"
+    (tmp_path / "long.toml").write_text(sensor)
+    done = acutance(
+        "plan", "pulse", "--sensor", tmp_path / "long.toml", "--width-m", "3", "--angle", "20",
+        "--rows", "30", "--draws", "0", "--json",
+    )  # fmt: skip
+    table = json.loads(done.stdout)["tables"]["plan"]
+    assert table["target_width_m"][0] == pytest.approx(3.0)
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [

@@ -48,6 +48,15 @@ def test_numbers_scale_and_shift_an_estimate() -> None:
     assert float(rer) == 2.0
 
 
+def test_numpy_integers_and_short_floats_are_numbers_as_any_other() -> None:
+    """-uint8(3) is 253, and 1 / uint8(3) has the three digits of half precision."""
+    rer = Estimate(5.0, 0.1)
+    for kind in (np.uint8, np.uint64, np.int8, np.float16, np.float32):
+        assert rer - kind(3) == rer - 3
+        assert rer / kind(3) == rer / 3
+    assert rer - np.int8(-128) == rer + 128
+
+
 def test_estimates_compare_by_value() -> None:
     rer = Estimate(0.5, 0.1)
     assert rer > 0.4

@@ -3,6 +3,7 @@
 import dataclasses
 import math
 
+import numpy as np
 import pytest
 
 from acutance import optics
@@ -57,6 +58,16 @@ def test_every_block_goes_round():
             tuple(sources[i] for i in kept),
         )  # fmt: skip
         assert sensor_file_from_toml(sensor_file_to_toml(described)) == described
+
+
+def test_numbers_of_numpy_go_round(tmp_path):
+    blocks = [
+        optics.Gaussian(np.float64(0.4), np.float32(0.5)),
+        optics.Tdi(np.int64(8), np.float64(0.01)),
+    ]
+    write_sensor(Sensor(blocks, np.float64(0.7), np.float32(0.75)), tmp_path / "a.toml")
+    read = read_sensor(tmp_path / "a.toml")
+    assert read == Sensor([optics.Gaussian(0.4, 0.5), optics.Tdi(8, 0.01)], 0.7, 0.75)
 
 
 @pytest.mark.parametrize("own", ["gsd_m = 0.5\ngsd_along_m = 0.6\n", ""])

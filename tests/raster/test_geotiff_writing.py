@@ -20,6 +20,14 @@ def test_round_trip(tmp_path, pixels, dtype):
     assert [entry.name for entry in tmp_path.iterdir()] == ["a.tif"]
 
 
+def test_a_gsd_of_numpys_numbers_comes_back(tmp_path, pixels):
+    path = tmp_path / "a.tif"
+    gsd = Gsd(np.float64(0.7), np.float32(0.5))
+    assert repr(gsd) == "Gsd(row_m=0.7, col_m=0.5)"
+    write_geotiff(path, pixels, gsd_m=gsd)
+    assert open_image(path).gsd() == Gsd(0.7, 0.5)
+
+
 def test_tiles_and_compression(tmp_path):
     path = tmp_path / "a.tif"
     write_geotiff(path, np.zeros((1000, 900), np.uint16))

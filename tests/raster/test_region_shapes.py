@@ -92,6 +92,45 @@ def test_the_mask_is_that_of_the_even_odd_rule(corners):
         assert mask[row - box.row, col - box.col] == inside
 
 
+@given(
+    st.lists(
+        st.tuples(st.floats(-20, 40), st.floats(-20, 40)), min_size=3, max_size=7, unique=True
+    ),
+    st.sampled_from([0.5, 3.0, 11.0]),
+)
+def test_a_margin_holds_what_is_near_any_side(corners, margin_px):
+    try:
+        region = Region(np.array(corners), margin_px=margin_px)
+    except RegionError:
+        return
+    box = Box(-3, 2, 12, 15)
+    places = np.stack(np.mgrid[-3:9, 2:17], axis=-1).astype(float)
+    distance = np.full(box.shape, np.inf)
+    for first, last in zip(region.vertices, np.roll(region.vertices, -1, axis=0), strict=True):
+        step, away = last - first, places - first
+        along = np.clip(away @ step / max(step @ step, 1e-300), 0.0, 1.0)
+        distance = np.minimum(distance, np.linalg.norm(away - along[..., None] * step, axis=-1))
+    expected = Region(region.vertices).mask(box) | (distance <= margin_px)
+    is_clear = np.abs(distance - margin_px) > 1e-6
+    assert np.array_equal(region.mask(box)[is_clear], expected[is_clear])
+
+
+def test_a_margin_widens_the_outline_and_narrows_holes():
+    outline = Region.from_box(Box(20, 30, 40, 10)).vertices
+    hole = Region.from_box(Box(30, 32, 20, 6)).vertices
+    region = Region(outline, (hole,), margin_px=2.0)
+    box = region.box((100, 100))
+    assert box == Box(18, 28, 44, 14)
+    mask = region.mask(box)
+    assert mask[0, 2:-2].all()
+    assert mask[2:-2, [0, -1]].all()
+    assert not mask[0, [0, -1]].any()
+    assert np.argwhere(~mask[4:-4, 4:-4]).min(axis=0).tolist() == [10, 2]
+    assert Region(outline, margin_px=2.0).box((50, 50)) == Box(18, 28, 32, 14)
+    with pytest.raises(RegionError, match="margin of a region is -1 px"):
+        Region(outline, margin_px=-1.0)
+
+
 def test_a_region_is_cut_at_the_border_and_refused_outside():
     region = Region.from_box(Box(-5, 8, 10, 10))
     assert region.box((20, 12)) == Box(0, 8, 5, 4)

@@ -1,6 +1,8 @@
 """Regions as texts and GeoJSON files."""
 
 import json
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,7 +10,9 @@ import rasterio
 
 from acutance.errors import RegionError
 from acutance.raster import Box, open_image, parse_roi, parse_rois
+from acutance.raster.positions import read_positions
 from acutance.raster.roi import parse_features
+from acutance.raster.site import find_site, site_region
 
 SQUARE = [[9.5, 4.5], [29.5, 4.5], [29.5, 14.5], [9.5, 14.5], [9.5, 4.5]]
 SQUARE_BOX = Box(5, 10, 10, 20)
@@ -74,6 +78,28 @@ def test_four_numbers_are_whole_pixels(plain):
 def test_texts_that_name_no_region(plain, text, message):
     with pytest.raises(RegionError, match=message):
         parse_roi(text, plain)
+
+
+@pytest.mark.parametrize("west", [180.0 - 2e-4, -180.0 - 2e-4])
+def test_degrees_on_both_sides_of_the_antimeridian(pixels, write_raster, write_geojson, west):
+    """An image over it has longitudes of one side only, files have those of both (RFC 7946)."""
+    place = rasterio.Affine(1e-5, 0, west, 0, -1e-5, -17.0)
+    image = open_image(write_raster("a.tif", pixels, crs="EPSG:4326", transform=place))
+    row, col = np.array([[10, 25], [10, 45], [20, 45], [20, 25], [10, 25]]).T - 0.5
+    lon, lat = image.geolocation.to_map(row, col)
+    lon = np.mod(lon + 180.0, 360.0) - 180.0
+    ring = np.column_stack([lon, lat]).tolist()
+    text = f"lonlat:{lon.min():.9f},{lat.min():.9f},{lon.max():.9f},{lat.max():.9f}"
+    for roi in (text, write_geojson(polygon(ring))):
+        assert parse_roi(roi, image).box(image.shape) == Box(10, 25, 10, 20)
+    (csv := Path(write_geojson("lon,lat\n", "a.csv"))).write_text(
+        "lon,lat\n" + "\n".join(f"{x!r},{y!r}" for x, y in ring[:4])
+    )
+    places = np.column_stack([row, col])[:4]
+    np.testing.assert_allclose(read_positions(str(csv), image), places, atol=1e-6)
+    site = replace(find_site("Stennis"), longitude_deg=lon[0], latitude_deg=lat[0])
+    middle = site_region(site, image, margin_m=0.0).vertices.mean(axis=0)
+    assert middle == pytest.approx([9.5, 24.5], abs=1e-6)
 
 
 def test_a_box_of_longitudes(located):

@@ -118,6 +118,25 @@ def test_a_value_of_nodata_is_not_made(sharpening):
     assert not (result == made).any()
 
 
+@pytest.mark.parametrize("nodata", [-9999, 70000, -9999.0, 0.5])
+def test_a_value_of_nodata_that_the_type_does_not_have_is_that_of_no_pixel(
+    tmp_path, sharpening, nodata
+):
+    image = np.zeros((50, 50), np.uint16)
+    image[20:30, 20:30] = 60
+    plain, _ = restore_array(image, sharpening)
+    found, counts = restore_array(image, sharpening, nodata=nodata)
+    assert np.array_equal(found, plain)
+    assert counts.nodata == counts.off_nodata == 0
+    np.save(tmp_path / "a.npy", image)
+    ac.restore(tmp_path / "a.npy", sharpening, out=tmp_path / "b.npy", nodata=nodata)
+    assert np.array_equal(np.load(tmp_path / "b.npy"), plain)
+    write(tmp_path / "a.tif", image)
+    ac.restore(tmp_path / "a.tif", sharpening, out=tmp_path / "b.tif", nodata=nodata)
+    with open_quietly(tmp_path / "b.tif") as dataset:
+        assert np.array_equal(dataset.read(1), plain)
+
+
 def test_masks_of_arrays_stay(landscape, sharpening):
     image = np.ma.masked_greater(landscape, np.percentile(landscape, 99))
     found = ac.restore(image, sharpening)

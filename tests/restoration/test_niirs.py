@@ -100,6 +100,28 @@ def test_deviations_of_the_inputs_and_of_the_equation_add_in_squares():
     assert exact.std == exact.equation_std
 
 
+@pytest.mark.parametrize("snr", [5, 80])
+def test_the_deviation_of_equal_rers_in_version_5_is_that_of_the_equation(snr):
+    """Of equal RERs the smaller one is whichever is lowered; it counts twice on that side alone."""
+    rer, std = 0.4, 0.01
+    low, high = (ac.niirs(gsd_m=0.7, rer=rer + one, snr=snr).value for one in (-1e-5, 1e-5))
+    one = ac.niirs(gsd_m=0.7, rer=ac.Estimate(rer, std), snr=snr)
+    assert one.inputs_std == pytest.approx(std * (high - low) / 2e-5, rel=1e-3)
+    two = ac.niirs(gsd_m=0.7, rer=(ac.Estimate(rer, std), ac.Estimate(rer, std)), snr=snr)
+    drawn = rer + std * np.random.default_rng(1).normal(size=(2000, 2))
+    scatter = np.std([ac.niirs(gsd_m=0.7, rer=tuple(both), snr=snr).value for both in drawn])
+    assert two.inputs_std == pytest.approx(scatter, rel=0.06)
+
+
+def test_the_jump_of_version_4_is_no_slope():
+    stds = [
+        ac.niirs(gsd_m=0.7, rer=ac.Estimate(rer, 0.01), snr=80, version=4).inputs_std
+        for rer in (0.89999, 0.9, 0.90001)
+    ]
+    by_rer = [2.817, 1.559, 1.559]
+    assert stds == pytest.approx([0.01 * one / math.log(10) / 0.9 for one in by_rer], rel=1e-3)
+
+
 def test_a_measurement_gives_what_is_not_stated(edges):
     found = ac.niirs(edges[0], elevation_deg=80)
     assert found.inputs.rer_across == found.inputs.rer_along == edges[0].rer.value

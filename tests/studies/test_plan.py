@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from acutance import OptionError
+from acutance import OptionError, Sensor
+from acutance.optics import Detector, Gaussian
 from acutance.studies import Execution, PlanOptions, plan_target
 
 ALONE = Execution(seed=3, workers=1)
@@ -93,6 +94,16 @@ def test_a_width_in_metres_over_the_gsd_is_no_second_width():
     widths = plan.table.where(varied="width")["target_width_px"]
     assert widths.tolist() == [1.5, 2.0, 2.5, width_px, 3.5, 4.0]
     assert "within 10 % of it: 3 px" in plan.finding("best_target_width_px").text
+
+
+def test_the_length_is_along_the_line_where_the_gsd_differs_between_rows_and_columns():
+    sensor = Sensor([Gaussian(0.4), Detector()], gsd_m=1.0, gsd_along_m=2.0)
+    plan = plan_target(PlanOptions(sensor=sensor, rows=(40,), draws=0), ALONE)
+    across = 40 * math.tan(math.radians(6.0))
+    assert plan.table["length_m"][0] == pytest.approx(math.hypot(80.0, across))
+    square = plan_target(PlanOptions(rows=(40,), draws=0), ALONE)
+    one_m = square.table["length_m"][0] / PlanOptions().sensor.gsd_m
+    assert one_m == pytest.approx(math.hypot(40.0, across))
 
 
 def test_an_edge_without_simulation_has_bounds_alone():

@@ -13,11 +13,12 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import chdtri, stdtr, stdtrit
+from scipy.special import chdtri, ndtr, stdtr, stdtrit
 
 from acutance.curves import Estimate
 from acutance.curves.estimate import normal_quantile
@@ -34,6 +35,8 @@ Paule and Mandel."""
 TRUSTED: Final = 0.8
 """Stated deviations are taken to be no more than a quarter too large."""
 _HALVINGS: Final = 60
+_STEPS: Final = 2000
+"""Places of equal probability, by which a mean over a density is taken."""
 
 
 @dataclass(frozen=True)
@@ -64,8 +67,15 @@ class WeightedMean:
         """How probable it is that the mean is below `limit`; ``nan`` of one measurement."""
         if self.count < 2 or not self.mean.std > 0:
             return float("nan")
-        own = student_std(self.mean.std, self.count - 1)
-        return float(stdtr(self.count - 1, (limit - self.mean.value) / own))
+        away, degrees = limit - self.mean.value, self.count - 1
+        square = self.mean.std**2 - self.systematic_std**2
+        own = student_std(float(np.sqrt(max(square, 0.0))), degrees)
+        if not self.systematic_std > 0:
+            return float(stdtr(degrees, away / own))
+        # Few measurements leave the scatter uncertain, not what they share: the sum of both is
+        # less long-tailed than Student's t of all of it.
+        scattered = own * _student_steps(degrees)
+        return float(ndtr((away - scattered) / self.systematic_std).mean())
 
     def to_dict(self) -> dict[str, Any]:
         """All fields for JSON."""
@@ -77,6 +87,12 @@ class WeightedMean:
             "systematic_std": self.systematic_std,
             "count": self.count,
         }
+
+
+@cache
+def _student_steps(degrees: int) -> Floats:
+    """Quantiles of Student's t in the middle of equal steps of probability."""
+    return np.asarray(stdtrit(degrees, (np.arange(_STEPS) + 0.5) / _STEPS))
 
 
 def student_std(std: float, degrees: float) -> float:

@@ -54,11 +54,8 @@ def _side_px(placed: PlacedTarget) -> float:
 
 
 def grown(placed: PlacedTarget) -> Region:
-    """The outline of a target, wider by what its place is uncertain."""
-    middle = placed.points.mean(axis=0)
-    away = placed.points - middle
-    length = np.maximum(np.hypot(away[:, 0], away[:, 1]), 1e-9)
-    return Region(middle + away * ((length + placed.search_px) / length)[:, np.newaxis])
+    """The outline of a target, wider on every side by what its place is uncertain."""
+    return Region(placed.points, margin_px=placed.search_px)
 
 
 def edge_candidates(placed: PlacedTarget, image: Image) -> list[tuple[RegionPixels, Segment]]:

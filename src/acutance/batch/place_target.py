@@ -10,7 +10,6 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.errors import RegionError
 from acutance.raster import Box, Geolocation, Gsd, Image, Region
-from acutance.raster.geolocation import is_geographic
 from acutance.raster.sensor_model import SensorModel
 from acutance.raster.surveyed_targets import SurveyedTarget
 
@@ -124,10 +123,12 @@ def _in_pixels(target: SurveyedTarget, image: Image, georeference: Georeference)
         row, col = georeference.from_crs(points[:, 0], points[:, 1], target.crs)
     except RegionError as error:
         raise NotHereError("no georeference", str(error)) from error
+    if isinstance(georeference, Geolocation):
+        col = georeference.nearest_turn(col, image.shape[1])
     found = np.column_stack([row, col])
     if not np.isfinite(found).all():
         raise NotHereError("outside", "the target lies where the image's map has no place for it")
-    return _near_image(found, image, georeference)
+    return found
 
 
 def _require_near(points: Floats, crs: str, image: Image, model: SensorModel) -> None:
@@ -142,20 +143,6 @@ def _require_near(points: Floats, crs: str, image: Image, model: SensorModel) ->
         raise NotHereError(
             "outside", "the target lies outside the image, however high the ground is there"
         )
-
-
-def _near_image(points: Floats, image: Image, georeference: Georeference) -> Floats:
-    """Points of an image in degrees, on the turn of the Earth on which the image lies."""
-    if not isinstance(georeference, Geolocation) or not is_geographic(georeference.crs):
-        return points
-    step = georeference.transform[0]
-    if step == 0.0 or georeference.transform[1] != 0.0:
-        return points
-    turn_px = 360.0 / abs(step)
-    middle = (image.shape[1] - 1) / 2
-    turns = np.round((points[:, 1] - middle) / turn_px)
-    moved: Floats = points - np.column_stack([np.zeros(len(points)), turns * turn_px])
-    return moved
 
 
 def _gsd_at(place: Floats, image: Image, georeference: Georeference) -> Gsd | None:

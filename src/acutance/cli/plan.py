@@ -134,12 +134,12 @@ def _plan(
     table = check_optional("--csv", design.csv, (".csv",), keep=kept)
     drawing = check_optional("--figure", design.figure, (".png", ".svg", ".pdf"), keep=kept)
     system = named_sensor(design.sensor, design.gsd)
+    angles_deg = _numbers("--angle", design.angle)
     options = PlanOptions(
         target=target, sensor=system, snr=_snr(design.snr, design.contrast, design.noise),
         rows=_whole_numbers("--rows", design.rows),
-        angles_deg=_numbers("--angle", design.angle),
-        widths_px=_widths(width_px, width_m, system), draws=design.draws,
-        accuracy=design.accuracy,
+        angles_deg=angles_deg, widths_px=_widths(width_px, width_m, system, angles_deg[0]),
+        draws=design.draws, accuracy=design.accuracy,
     )  # fmt: skip
     with progress_bar(f"plan {target}") as progress:
         result: Any = plan_target(
@@ -162,14 +162,18 @@ def _snr(snr: float | None, contrast: float | None, noise: float | None) -> floa
     return contrast / noise
 
 
-def _widths(width_px: str | None, width_m: str | None, sensor: Sensor) -> tuple[float, ...]:
+def _widths(
+    width_px: str | None, width_m: str | None, sensor: Sensor, angle_deg: float
+) -> tuple[float, ...]:
+    """Widths in pixels along the normal of the planned angle, whose GSD they are divided by."""
     if width_px is not None and width_m is not None:
         raise OptionError("--width-px and --width-m were both given: give one of them")
     if width_m is None:
         return _numbers("--width-px", width_px or "3")
-    if sensor.gsd_m is None:
+    gsd_m = sensor.gsd_along_normal_m(angle_deg)
+    if gsd_m is None:
         raise OptionError(f"--width-m {width_m} needs the ground sampling distance: add --gsd")
-    return tuple(width / sensor.gsd_m for width in _numbers("--width-m", width_m))
+    return tuple(width / gsd_m for width in _numbers("--width-m", width_m))
 
 
 def _numbers(option: str, text: str) -> tuple[float, ...]:

@@ -184,7 +184,7 @@ class Estimate:
         return self._linear(1.0, other) if _is_plain(other, "sum") else NotImplemented
 
     def __sub__(self, other: float) -> Estimate:
-        return self._linear(1.0, -other) if _is_plain(other, "difference") else NotImplemented
+        return self + -float(other) if _is_plain(other, "difference") else NotImplemented
 
     def __rsub__(self, other: float) -> Estimate:
         return self._linear(-1.0, other) if _is_plain(other, "difference") else NotImplemented
@@ -193,7 +193,7 @@ class Estimate:
         return self._linear(other, 0.0) if _is_plain(other, "product") else NotImplemented
 
     def __truediv__(self, other: float) -> Estimate:
-        return self._linear(1 / other, 0.0) if _is_plain(other, "ratio") else NotImplemented
+        return self._linear(1 / float(other), 0.0) if _is_plain(other, "ratio") else NotImplemented
 
     def __neg__(self) -> Estimate:
         return self._linear(-1.0, 0.0)

@@ -27,6 +27,8 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from acutance.errors import ModelError
 from acutance.optics.block import Block
 from acutance.optics.catalogue import BLOCKS
@@ -216,7 +218,10 @@ def _kind_of(block: Block) -> str:
 def _toml(value: Any) -> str:
     if isinstance(value, tuple):
         return "[" + ", ".join(_toml(item) for item in value) + "]"
-    return json.dumps(value) if isinstance(value, str) else repr(value)
+    if isinstance(value, str):
+        return json.dumps(value)
+    # A number of numpy has a repr of its own ("np.float64(0.4)"), which is no TOML.
+    return repr(value.item() if isinstance(value, np.generic) else value)
 
 
 def _block(table: Any, pixel_m: tuple[float, float] | None, origin: str) -> Block:

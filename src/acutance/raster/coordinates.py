@@ -49,7 +49,7 @@ def to_pixels(points: Floats, crs: str, image: Image) -> Floats:
             f"the coordinates cannot be carried from {crs} to the image's CRS: they lie too far "
             "away; choose a place inside the image"
         )
-    return np.column_stack([row, col])
+    return np.column_stack([row, image.geolocation.nearest_turn(col, image.shape[1])])
 
 
 def crs_without_declaration(parts: Sequence[Floats], image: Image, name: str) -> str:

@@ -118,6 +118,18 @@ class Geolocation:
         """
         return self.from_map(*transform_points(x, y, crs, self.crs))
 
+    def nearest_turn(self, col: ArrayLike, width: int) -> Floats:
+        """Columns of an image of a width in degrees, on the turn of the Earth on which it lies.
+
+        Longitudes of 179.9 and -180.1 degrees are one place, and 360 degrees of columns apart.
+        """
+        cols = np.asarray(col, dtype=np.float64)
+        step, shear = self.transform[:2]
+        if step == 0.0 or shear != 0.0 or not is_geographic(self.crs):
+            return cols
+        turn_px = 360.0 / abs(step)
+        return np.asarray(cols - np.round((cols - (width - 1) / 2) / turn_px) * turn_px)
+
     def gsd(self, row: float, col: float) -> Gsd | None:
         """Ground sampling distance at a pixel.
 

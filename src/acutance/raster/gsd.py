@@ -50,11 +50,14 @@ class Gsd:
                     f"a GSD of {value:g} m between {axis} means nothing: "
                     "give a positive number of metres, for example 0.7 (gsd_m, --gsd)"
                 )
+        # Files and documents are written of plain numbers: the repr of numpy's is none.
+        object.__setattr__(self, "row_m", float(self.row_m))
+        object.__setattr__(self, "col_m", float(self.col_m))
 
     @classmethod
     def square(cls, gsd_m: float) -> Gsd:
         """The same distance between rows and between columns."""
-        return cls(float(gsd_m), float(gsd_m))
+        return cls(gsd_m, gsd_m)
 
     @classmethod
     def given(cls, gsd_m: float | Gsd | None) -> Gsd | None:

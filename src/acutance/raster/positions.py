@@ -133,5 +133,6 @@ def _in_pixels(path: str, kind: str, right: Floats, down: Floats, image: Image) 
             "column in pixels"
         )
     if kind == "map":
-        return np.column_stack(image.geolocation.from_map(right, down))
+        row, col = image.geolocation.from_map(right, down)
+        return np.column_stack([row, image.geolocation.nearest_turn(col, image.shape[1])])
     return to_pixels(np.column_stack([right, down]), LONLAT_CRS, image)

@@ -132,18 +132,24 @@ class Region(ShortRepr):
         Corners as (row, col); a repeated last corner is dropped. At least 3.
     holes : tuple of (k, 2) arrays, optional
         Outlines of what is left out, in the same coordinates.
+    margin_px : float, optional
+        Pixels no farther than this from the outline, or from that of a hole, belong to it, too.
 
     Raises
     ------
     RegionError
         If an outline has fewer than three corners, no area, a coordinate that is not finite, or
-        four corners whose sides cross: two triangles instead of the figure that is meant.
+        four corners whose sides cross: two triangles instead of the figure that is meant; or if the
+        margin is no number from 0 on.
     """
 
     vertices: Floats
     holes: tuple[Floats, ...] = ()
+    margin_px: float = 0.0
 
     def __post_init__(self) -> None:
+        if not 0.0 <= self.margin_px < np.inf:
+            raise RegionError(f"the margin of a region is {self.margin_px:g} px: give 0 or more")
         object.__setattr__(self, "vertices", _outline(self.vertices))
         object.__setattr__(self, "holes", tuple(_outline(hole) for hole in self.holes))
 
@@ -167,7 +173,8 @@ class Region(ShortRepr):
         RegionError
             If the region holds no pixel centre of the image.
         """
-        low, high = self.vertices.min(axis=0), self.vertices.max(axis=0)
+        low = self.vertices.min(axis=0) - self.margin_px
+        high = self.vertices.max(axis=0) + self.margin_px
         extent = (
             f"it covers rows {low[0]:.1f} to {high[0]:.1f}, columns {low[1]:.1f} to {high[1]:.1f} "
             f"of an image of {shape[0]} rows x {shape[1]} columns"
@@ -208,6 +215,9 @@ class Region(ShortRepr):
         inside = _inside(self.vertices, box)
         for hole in self.holes:
             inside &= ~_inside(hole, box)
+        if self.margin_px > 0:
+            for outline in (self.vertices, *self.holes):
+                inside |= _near(outline, self.margin_px, box)
         return inside
 
 
@@ -266,3 +276,31 @@ def _inside(outline: Floats, box: Box) -> NDArray[np.bool_]:
     np.add.at(crossings, (at_row, first), 1)
     inside: NDArray[np.bool_] = np.cumsum(crossings[:, :-1], axis=1, dtype=np.uint8) % 2 == 1
     return inside
+
+
+def _near(outline: Floats, margin_px: float, box: Box) -> NDArray[np.bool_]:
+    """Which pixels of a box have their centre within a margin of an outline, row by row.
+
+    What lies within the margin of one side is convex: in every row it is one run of columns, whose
+    ends belong to the points of the side that a tangent at the margin touches there.
+    """
+    start, step = outline, np.roll(outline, -1, axis=0) - outline
+    low, high = np.minimum(start, start + step)[:, 0], np.maximum(start, start + step)[:, 0]
+    rows = np.arange(box.row, box.row + box.height, dtype=np.float64)[:, np.newaxis]
+    at_row, side = np.nonzero((low - margin_px <= rows) & (rows < high + margin_px))
+    (down, right), away = step[side].T, rows[at_row, 0] - start[side, 0]
+    reach = margin_px * np.abs(right) / np.maximum(np.hypot(down, right), 1e-300)
+    ends = []
+    for sense in (-1.0, 1.0):
+        towards = np.sign(sense * right * down)
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            share = np.clip((away + towards * reach) / down, 0.0, 1.0)
+        share = np.where(down == 0.0, sense * right > 0.0, share)
+        half = np.sqrt(np.maximum(margin_px**2 - (away - share * down) ** 2, 0.0))
+        ends.append(start[side, 1] + share * right + sense * half)
+    first, stop = (np.clip(np.ceil(one) - box.col, 0, box.width).astype(np.intp) for one in ends)
+    runs = np.zeros((box.height, box.width + 1), dtype=np.int16)
+    np.add.at(runs, (at_row, first), 1)
+    np.add.at(runs, (at_row, stop), -1)
+    near: NDArray[np.bool_] = np.cumsum(runs[:, :-1], axis=1, dtype=np.int16) > 0
+    return near

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack
@@ -236,11 +235,17 @@ def _profile(source: Any, nodata: float | None) -> dict[str, Any]:
 
 
 def _declared(source: Any, nodata: float | None) -> float | None:
-    """The value of nodata for the new file: NaN was given where every value is data."""
+    """The value of nodata for the new file; none where its type does not have the one given.
+
+    NaN says that every value is data, and whole numbers without a sign have no -9999.
+    """
     if nodata is None:
         return None if source.nodata is None else float(source.nodata)
-    is_float = np.dtype(source.dtypes[0]).kind == "f"
-    return nodata if is_float or not math.isnan(nodata) else None
+    dtype = np.dtype(source.dtypes[0])
+    if dtype.kind not in "iu":
+        return nodata
+    bounds = np.iinfo(dtype)
+    return nodata if bounds.min <= nodata <= bounds.max else None
 
 
 def _is_rgb(source: Any) -> bool:

@@ -156,8 +156,8 @@ def site_region(site: Site, image: Image, margin_m: float = 30.0) -> Region:
             "give the region in pixels with --roi ROW,COL,HEIGHT,WIDTH"
         )
     where = image.geolocation.from_lonlat(site.longitude_deg, site.latitude_deg)
-    row, col = float(where[0]), float(where[1])
     rows, cols = image.shape
+    row, col = float(where[0]), float(image.geolocation.nearest_turn(where[1], cols))
     if not (-0.5 <= row < rows - 0.5 and -0.5 <= col < cols - 0.5):
         raise RegionError(
             f"the image does not contain {site.title}: {site.latitude_deg:.5f}, "

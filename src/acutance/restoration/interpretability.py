@@ -322,21 +322,37 @@ def _inputs_std(
     """
     names = ("rer_across", "rer_along", "snr", "giqe_h")
     stds = [_std(known[name]) for name in names]
+    parts = [[std if k == i else 0.0 for k, std in enumerate(stds)] for i in range(len(stds))]
+    if known.get("correlated"):
+        parts[:2] = [[*stds[:2], 0.0, 0.0]]
 
     def of(changed: Sequence[float]) -> float:
         again = _inputs(changed, inputs.gsd_m, inputs.elevation_deg, inputs.noise_gain)
         return giqe(again, version)
 
-    terms = [_slope(of, values, i) * std for i, std in enumerate(stds)]
-    rer = abs(terms[0] + terms[1]) if known.get("correlated") else math.hypot(*terms[:2])
-    return math.hypot(rer, *terms[2:])
+    return math.hypot(*(_change(of, values, part, version) for part in parts))
 
 
-def _slope(function: Callable[[Sequence[float]], float], values: Sequence[float], i: int) -> float:
-    """Derivative by one of the values, from below: away from the jump of version 4."""
-    step = _STEP * values[i]
-    moved = [value - step if k == i else value for k, value in enumerate(values)]
-    return (function(values) - function(moved)) / step
+def _change(
+    function: Callable[[Sequence[float]], float], values: Sequence[float], stds: Sequence[float],
+    version: GiqeVersion,
+) -> float:  # fmt: skip
+    """By how much NIIRS changes when inputs move together, each by its deviation: to first order.
+
+    Version 5 has a kink where both RERs are equal, at which either side alone would count one of
+    them too much: the mean of both sides is taken. Version 4 jumps, and the side without the jump
+    has the slope.
+    """
+    largest = max(std / value for std, value in zip(stds, values, strict=True))
+    if largest == 0.0:
+        return 0.0
+    step = _STEP / largest
+    below, above = (
+        (function([value + side * std for value, std in zip(values, stds, strict=True)])
+         - function(values)) / side
+        for side in (-step, step)
+    )  # fmt: skip
+    return 0.5 * (below + above) if version == 5 else min(below, above, key=abs)
 
 
 def _std(value: float | Estimate) -> float:

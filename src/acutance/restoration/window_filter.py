@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.numerics.convolution import convolve_inside
+from acutance.raster.pixels import equals_nodata
 from acutance.restoration.filling import CONTEXT_PX, fill_unusable
 
 __all__ = ["PixelCounts", "StoredType", "reach_px", "restored_window"]
@@ -191,11 +192,11 @@ def _as_stored(
             np.clip(sharp, -limit, limit, out=sharp)
     with np.errstate(over="ignore", invalid="ignore"):
         pixels = sharp.astype(kind.dtype)
-    if kind.nodata is not None and not np.isnan(kind.nodata):
-        on_nodata = (pixels == kind.dtype.type(kind.nodata)) & ~kept
+    # The type may not have it: no pixel becomes -9999 of unsigned ones, or 0.5 of whole numbers.
+    on_nodata = equals_nodata(pixels, kind.nodata) & ~kept
+    if on_nodata.any():
         moved = int(np.count_nonzero(on_nodata))
-        if moved:
-            pixels[on_nodata] = _beside(own[on_nodata], kind)
+        pixels[on_nodata] = _beside(own[on_nodata], kind)
     if kept.any():
         pixels[kept] = own[kept]
     return pixels, PixelCounts(sharp.size, 0, 0, low, high, moved)

@@ -232,7 +232,7 @@ def _row(options: PlanOptions, design: Design, records: list[Record]) -> dict[st
     bound = shape_bound(blur, design, options.snr)
     row: dict[str, Cell] = {
         "rows": design.rows,
-        "length_m": design.rows * gsd_m / math.cos(math.radians(design.angle_deg)),
+        "length_m": _length_m(design, options.sensor),
         "angle_deg": design.angle_deg,
         "target_width_px": design.width_px,
         "target_width_m": design.width_px * gsd_m,
@@ -251,6 +251,13 @@ def _row(options: PlanOptions, design: Design, records: list[Record]) -> dict[st
         }
     row["refused"] = sum(math.isnan(record["mtf_nyquist_error"]) for record in records)
     return row
+
+
+def _length_m(design: Design, sensor: Sensor) -> float:
+    """Length on the ground of a line that crosses the rows: it runs along the track, mostly."""
+    row_m, col_m = sensor.pixel_m or (math.nan, math.nan)
+    leaning = math.tan(math.radians(design.angle_deg))
+    return design.rows * math.hypot(row_m, leaning * col_m)
 
 
 def _findings(options: PlanOptions, table: Table) -> tuple[Finding, ...]:

@@ -189,6 +189,25 @@ def test_a_changed_gsd_is_an_event_in_pixels_and_none_in_metres(series_of: Make)
     assert len(metres.changes) == 1
 
 
+@pytest.mark.parametrize("days", [0.002, 1.0, 3.0])
+def test_a_gsd_changes_between_its_images_however_near_they_are(days: float) -> None:
+    """The middle of two images cut to its day lies before the first of them."""
+    months = [decimal_year(f"2023-{month:02d}-01T10:00:00Z") for month in range(1, 11)]
+    when = np.insert(months, 5, months[4] + days / 365)
+    is_new = when > months[4]
+    scatter = 0.005 * np.random.default_rng(0).normal(size=when.size)
+    trend = fit_trend(Series(
+        metric="fwhm_px", when=when, value=np.where(is_new, 1.2, 1.4) + scatter,
+        std=np.full(when.size, 0.005), image=np.arange(when.size),
+        gsd_m=np.where(is_new, 1.2, 1.0),
+    ))  # fmt: skip
+    (event,) = trend.events
+    assert event.size.value == pytest.approx(-0.2, abs=3 * event.size.std)
+    assert event.size.std < 0.01
+    assert not trend.changes
+    assert not trend.bad_days
+
+
 def test_decimal_years_and_days_agree() -> None:
     assert decimal_year("2023-01-01") == 2023.0
     assert decimal_year("2023-07-02T12:00:00Z") == pytest.approx(2023.5)

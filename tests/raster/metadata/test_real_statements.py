@@ -116,7 +116,6 @@ PRODUCTS = {
             "acquired": datetime(2021, 11, 21, 2, 2, 56, tzinfo=UTC),
             "gsd_m": (3.0, 3.0),
             "view_zenith_deg": 5.4137,
-            "view_azimuth_deg": 11.3807,
             "sun_elevation_deg": 43.35266,
             "sun_azimuth_deg": 147.943,
         },

@@ -15,6 +15,7 @@ from acutance.raster.geolocation import Geolocation
 from acutance.simulate import NativeGrid, PairGround
 from acutance.targets.pair import pair
 from acutance.targets.pair.gaussian_fit import GaussianFit
+from acutance.targets.pair.grid import pair_grid
 from acutance.targets.pair.noise import HighNoise
 
 
@@ -350,6 +351,15 @@ class TestGeometry:
         assert m.grid.source == "geotransform"
         assert [one.value for one in m.shift_px] == pytest.approx((1.3, -0.6), abs=0.02)
         assert m.image.pixel_gsd_m == pytest.approx((20.0, 20.0))
+
+    @pytest.mark.parametrize("west", [-180.0002, 179.9998])
+    def test_images_on_two_turns_of_the_earth(self, west: float) -> None:
+        low, high = ac.Image.from_array(np.ones((20, 40))), ac.Image.from_array(np.ones((80, 80)))
+        degrees = "EPSG:4326"
+        coarse = Geolocation((2e-5, 0.0, west, 0.0, -2e-5, 10.0), degrees)
+        fine = Geolocation((1e-5, 0.0, 179.9998, 0.0, -1e-5, 10.0), degrees)
+        grid = pair_grid(replace(low, geolocation=coarse), replace(high, geolocation=fine), None)
+        assert (grid.down.origin, grid.across.origin) == pytest.approx((0.5, 0.5), abs=1e-6)
 
     def test_fraction_of_a_pixel_in_the_geotransform(self) -> None:
         m = ac.measure_biresolution(*self.georeferenced(7.0), reference_mtf=REFERENCE)

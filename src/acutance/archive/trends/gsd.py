@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from acutance.archive.trends.series import Event, Series, date_of
+from acutance.archive.trends.series import Event, Series, moment_of
 from acutance.curves.grid import Floats
 
 __all__ = ["gsd_classes", "gsd_events", "gsd_range"]
@@ -67,8 +67,9 @@ def gsd_events(series: Series) -> tuple[tuple[Event, ...], tuple[str, ...]]:
             f"The {span}, from image to image: numbers in pixels scatter with it. Compare lengths "
             "in metres (fwhm_m).",
         )
+    # The moment and not its day, which would begin before the earlier of two images of a day.
     events = tuple(
-        Event(date_of(0.5 * float(when[at - 1] + when[at])),
+        Event(moment_of(0.5 * float(when[at - 1] + when[at])),
               f"GSD {gsd_m[at - 1]:.3g} to {gsd_m[at]:.3g} m")
         for at in changed
     )  # fmt: skip

@@ -16,7 +16,7 @@ from acutance.curves.metric_words import metric_words
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 
-__all__ = ["Event", "Series", "date_of", "decimal_year"]
+__all__ = ["Event", "Series", "date_of", "decimal_year", "moment_of"]
 
 
 def decimal_year(when: datetime | date | str) -> float:
@@ -27,12 +27,17 @@ def decimal_year(when: datetime | date | str) -> float:
     return moment.year + (moment - begin) / (end - begin)
 
 
-def date_of(year: float) -> date:
-    """The day of a year with decimals."""
+def moment_of(year: float) -> datetime:
+    """The moment (UTC) of a year with decimals."""
     begin = datetime(int(year), 1, 1, tzinfo=UTC)
     end = datetime(int(year) + 1, 1, 1, tzinfo=UTC)
+    return begin + (year % 1) * (end - begin)
+
+
+def date_of(year: float) -> date:
+    """The day of a year with decimals."""
     # Half a second more: midnight stays on its day.
-    return (begin + (year % 1) * (end - begin) + timedelta(seconds=0.5)).date()
+    return (moment_of(year) + timedelta(seconds=0.5)).date()
 
 
 @dataclass(frozen=True)

@@ -38,7 +38,6 @@ def read_planetscope(root: Element, source: str) -> Findings:
             ),
             "gsd_m": (None if not (row and col) else (row, col), "rowGsd, columnGsd"),
             "view_zenith_deg": (number(text_at(acquisition, "incidenceAngle")), "incidenceAngle"),
-            "view_azimuth_deg": (number(text_at(acquisition, "azimuthAngle")), "azimuthAngle"),
             "sun_elevation_deg": (
                 number(text_at(acquisition, "illuminationElevationAngle")),
                 "illuminationElevationAngle",
@@ -48,8 +47,19 @@ def read_planetscope(root: Element, source: str) -> Findings:
                 "illuminationAzimuthAngle",
             ),
         },
+        notes=_notes(acquisition, source),
         centre=_centre(root),
     )  # fmt: skip
+
+
+def _notes(acquisition: Element | None, source: str) -> tuple[str, ...]:
+    """What is not taken."""
+    if text_at(acquisition, "azimuthAngle") is None:
+        return ()
+    return (
+        f"{source}: azimuthAngle is the direction of the scan, not of the satellite: the view "
+        "azimuth stays empty",
+    )
 
 
 def _centre(root: Element) -> tuple[float, float] | None:

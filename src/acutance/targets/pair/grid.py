@@ -242,6 +242,9 @@ def _by_geotransforms(low: Image, high: Image, ratio: float | None) -> PairGrid:
     at_row, at_col = np.array([0.0, 0.0, rows, rows]), np.array([0.0, cols, 0.0, cols])
     x, y = low.geolocation.to_map(at_row, at_col)
     down, across = high.geolocation.from_crs(x, y, low.geolocation.crs)
+    # All corners turn together: a low image of the whole Earth has them on both sides.
+    middle = float(across.mean())
+    across = across + (high.geolocation.nearest_turn(middle, high.shape[1]) - middle)
     if not (np.isfinite(down).all() and np.isfinite(across).all()):
         raise RegionError(
             "the low image's corners have no place in the high image's CRS: the two show "
