@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import json
 import threading
+from dataclasses import replace
 from datetime import UTC, date, datetime, timedelta, timezone
 
 import numpy as np
 import pytest
+from sqlalchemy import update
 
 import acutance as ac
 from acutance.archive import Archive, Entry, ImageCorrection, ImageEntry, TargetEntry
+from acutance.archive.identity import keys_of
+from acutance.archive.tables import measurements
 from acutance.curves import METRICS
 from acutance.errors import OptionError
 
@@ -105,6 +109,112 @@ def test_edges_of_one_region_are_several(archive, entry_of, edge_record):
     line = {**edge_record.document["line"], "row": 50.0}
     second = ac.Record({**edge_record.document, "line": line})
     assert archive.add_entries([entry_of(0, record=edge_record), entry_of(0, record=second)]) == 2
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"image": {"along_track": "x"}},
+        {"image": {"pixel_gsd_m": [0.5, 0.7]}},
+        {"image": {"pixel_gsd_m": None, "gsd_m": None}},
+        {"image": {"linearized": "square root"}},
+        {"stated_width_px": 2.9, "width_px": {"value": 2.9, "std": 0.0}},
+    ],
+)
+@pytest.mark.parametrize("content", [None, "ab" * 32])
+def test_what_is_stated_otherwise_is_another_measurement(archive, edge_record, content, changed):
+    """It has other numbers, or another direction: it was passed over in silence."""
+    image = ImageEntry(path="B4.tif", content=content)
+    other = {**edge_record.document, **changed}
+    other["image"] = {**edge_record.document["image"], **changed.get("image", {})}
+    assert archive.add(edge_record, image=image).new
+    assert archive.add(ac.Record(other), image=image).new
+    assert not archive.add(ac.Record(other), image=image).new
+    assert not archive.add(edge_record, image=image).new
+
+
+def test_sources_in_other_places_are_another_measurement(archive, bars_record):
+    """Two groups of mirrors of one image, about one middle, too."""
+
+    def measured(places):
+        sources = [{"row": {"value": row}, "col": {"value": col}} for row, col in places]
+        return ac.Record({**bars_record.document, "kind": "points", "sources": sources})
+
+    image = ImageEntry(content="ab" * 32)
+    square = np.array([[-1, -1], [-1, 1], [1, -1], [1, 1]])
+    groups = [50 + 10 * square, 50 + 20 * square, 52 + 10 * square, 50 + 10 * square[:3]]
+    assert [archive.add(measured(one), image=image).new for one in groups] == [True] * 4
+    assert not archive.add(measured(groups[1] + 0.01), image=image).new
+
+
+def test_pairs_of_one_image_with_two_references_are_two(archive, bars_record):
+    image = ImageEntry(content="ab" * 32)
+    across = bars_record.document["across"]
+    other = {**across, "mtf_nyquist": {**across["mtf_nyquist"], "value": 0.3}}
+    for document in ({}, {"across": other}):
+        pair = ac.Record({**bars_record.document, "kind": "biresolution", **document})
+        assert archive.add(pair, image=image).new
+        assert not archive.add(pair, image=image).new
+
+
+def older_key(entry):
+    """The key that version 0.1 gave to an entry."""
+    return keys_of(entry).older
+
+
+def test_what_an_older_version_kept_is_there(archive, entry_of):
+    kept = [entry_of(i) for i in range(4)]
+    archive.add_entries([replace(one, key=f"{i}") for i, one in enumerate(kept)])
+
+    def write_older_keys(connection):
+        for i, one in enumerate(kept):
+            row = measurements.c.key == f"{i}"
+            connection.execute(update(measurements).where(row).values(key=older_key(one)))
+
+    archive._database.write(write_older_keys)
+    assert archive.keys() == {older_key(one) for one in kept}
+    assert archive.add_entries(kept) == 0
+    again = archive.add(kept[1].record, image=kept[1].image, target=kept[1].target, band="pan")
+    assert (again.new, again.id, again.key) == (False, 2, older_key(kept[1]))
+    image = replace(kept[0].image, sensor="K9")
+    with pytest.raises(OptionError, match="with sensor K3, not K9"):
+        archive.add(kept[0].record, image=image, target=kept[0].target, band="pan")
+    document = kept[0].record.document
+    turned = ac.Record({**document, "image": {**document["image"], "along_track": "x"}})
+    assert archive.add_entries([replace(kept[0], record=turned), *kept]) == 1
+
+
+@pytest.mark.parametrize(
+    ("content", "key"),
+    [
+        (None, "825be51623057c0f8a502300682c300a27be1d18a1b642617611c2f90ece57e4"),
+        ("ab" * 32, "3a64c98ba8910f86b640048851191dcb1926132258c68b23ea3fc6f46b234f30"),
+    ],
+)
+def test_the_key_of_an_older_version_is_what_it_was(content, key):
+    """Computed by version 0.1."""
+    record = ac.Record({
+        "schema": "acutance/measurement/1", "kind": "edge", "method": "spline",
+        "orientation": "across", "snr": 100.0, "checks": [],
+        "image": {"path": "/a/B4.tif", "band": 2, "roi": [1, 2, 60, 44]},
+        "line": {"row": 30.2, "col": 21.7, "normal_deg": 6.01},
+        "options": {"robust": True, "limits": {}}, "measured_at": "2026-01-01T00:00:00+00:00",
+        "mtf_nyquist": {"value": 0.1234567, "std": 0.01},
+    })  # fmt: skip
+    image = ImageEntry(path="/b/B4.tif", content=content)
+    target = TargetEntry(name="tarp", kind="edge")
+    entry = Entry(record=record, image=image, target=target, band="pan")
+    assert older_key(entry) == key
+
+
+def test_documents_of_an_older_version_are_what_is_there(archive, entry_of):
+    """They state the key that was derived without what is stated of the measurement."""
+    entry = entry_of(0)
+    assert archive.add_entries([entry]) == 1
+    assert archive.add_entries([replace(entry, key=older_key(entry))]) == 0
+    later = entry_of(1)
+    assert archive.add_entries([replace(later, key=older_key(later))]) == 1
+    assert archive.add_entries([later]) == 0
 
 
 def test_a_key_of_ones_own(archive, entry_of):

@@ -20,6 +20,7 @@ from sqlalchemy.sql.dml import ReturningInsert
 from acutance.archive.connection import Database, insert_missing
 from acutance.archive.correction_notes import has_notes, share_corrections
 from acutance.archive.entry import Entry, ImageEntry, Kept, TargetEntry
+from acutance.archive.kept_keys import kept_keys
 from acutance.archive.rows import EntryRows, image_row, rows_of, target_row
 from acutance.archive.runs import complete_runs, ids_of_runs, with_whole_runs
 from acutance.archive.tables import directions, documents, images, measurements, runs, targets
@@ -65,9 +66,15 @@ def add_entry(database: Database, entry: Entry, run: int | None = None) -> Kept:
     """
     rows = rows_of(entry)
     added = _write(database, [rows], run)
-    found = select(measurements.c.id).where(measurements.c.key == rows.key)
-    number = database.read(lambda connection: connection.execute(found).scalar_one())
-    return Kept(number, rows.key, bool(added))
+    number, key = database.read(lambda connection: _place_of(connection, rows))
+    return Kept(number, key, bool(added))
+
+
+def _place_of(connection: Connection, rows: EntryRows) -> tuple[int, str]:
+    """Number and key of the row of an entry that is there."""
+    key = kept_keys(connection, [rows])[rows.key]
+    found = select(measurements.c.id).where(measurements.c.key == key)
+    return connection.execute(found).scalar_one(), key
 
 
 def add_entries(
@@ -130,8 +137,7 @@ def _chunks(entries: Iterable[Entry]) -> Iterator[list[EntryRows]]:
 
 def _add_chunk(connection: Connection, chunk: Mapping[str, EntryRows], run: int | None) -> int:
     _require_run(connection, run)
-    there = select(measurements.c.key).where(measurements.c.key.in_(list(chunk)))
-    known = set(connection.execute(there).scalars())
+    known = kept_keys(connection, list(chunk.values()))
     new = [one for key, one in chunk.items() if key not in known]
     # Entries that are there may still have more of their run, and corrections of their image.
     if run is None:

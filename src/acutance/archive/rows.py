@@ -4,13 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Any
 
 from acutance.archive.dates import as_utc
 from acutance.archive.entry import Entry, ImageEntry, RunEntry, TargetEntry
-from acutance.archive.identity import file_name, image_identity, key_of, target_identity
+from acutance.archive.identity import (
+    Stated,
+    file_name,
+    image_identity,
+    keys_of,
+    stated_of,
+    target_identity,
+)
 from acutance.archive.packing import packed, plain_json
 from acutance.archive.systematic import systematic_stds
 from acutance.archive.tables import VERDICTS
@@ -41,6 +48,10 @@ class EntryRows:
     document : bytes or None
         The document as it is stored.
     run : RunEntry or None
+    older_key : str or None
+        Under which an older version may have kept the same.
+    stated : mapping
+        What tells it apart from others of that key.
     """
 
     key: str
@@ -50,6 +61,8 @@ class EntryRows:
     directions: tuple[Row, ...]
     document: bytes | None
     run: RunEntry | None
+    older_key: str | None = None
+    stated: Stated = field(default_factory=dict)
 
 
 def rows_of(entry: Entry) -> EntryRows:
@@ -63,7 +76,7 @@ def rows_of(entry: Entry) -> EntryRows:
     if not isinstance(entry, Entry):
         raise OptionError(f"a {type(entry).__name__} was given: add entries, Entry(record=...)")
     record, rejected, target = entry.record, entry.rejected, entry.target
-    key = key_of(entry)
+    key, older_key = keys_of(entry)
     row: Row = dict.fromkeys(
         ("kind", "method", "verdict", "snr", "measured_at", "stage", "reason", "rejected_values")
     )
@@ -87,7 +100,8 @@ def rows_of(entry: Entry) -> EntryRows:
     }
     directions = tuple(_direction_rows(record))
     return EntryRows(
-        key, entry.image, target, row, directions, packed(record.document), entry.run
+        key, entry.image, target, row, directions, packed(record.document), entry.run, older_key,
+        {} if older_key is None else stated_of(record),
     )  # fmt: skip
 
 

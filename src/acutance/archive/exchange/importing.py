@@ -17,7 +17,7 @@ from acutance.archive.exchange.csv_tables import read_csv
 from acutance.archive.exchange.documents import Stated, entries_of
 from acutance.archive.exchange.jsonl import read_jsonl
 from acutance.archive.exchange.parquet import read_parquet
-from acutance.archive.identity import key_of
+from acutance.archive.identity import keys_of
 from acutance.errors import OptionError
 
 __all__ = ["Imported", "import_files", "refused_files"]
@@ -81,7 +81,8 @@ def import_files(
             for place, entry in _readable(Path(path), stated, refused):
                 count += 1
                 if entry.key is None:
-                    described[key_of(entry)] = place, entry.image
+                    for key in filter(None, keys_of(entry)):
+                        described[key] = place, entry.image
                 yield entry
 
     new = add_entries(database, entries(), run, progress)
