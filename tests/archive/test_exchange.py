@@ -252,6 +252,27 @@ def test_documents_of_commands_are_imported(archive, edge_record, tmp_path):
     assert archive.import_documents(tmp_path, sensor="K3", acquired="2026-01-01").new == 0
 
 
+def test_all_edges_of_several_regions_keep_region_and_band(archive, edge_record, tmp_path):
+    """The result of a region names it once; bands and targets were mixed in trends."""
+    number = edge_record.document["mtf_nyquist"]
+    rejected = {"stage": "fit", "reason": "no edge", "values": {"row": 3}}
+
+    def found(band, region, value):
+        one = {**edge_record.document, "mtf_nyquist": {**number, "value": value}}
+        return {
+            "schema": "acutance/target/1", "band": band, "region": region,
+            "measurements": [one], "rejected": [rejected],
+        }  # fmt: skip
+
+    several = [found("1", "north", 0.2), found("2", "north", 0.3), found("2", "south", 0.4)]
+    document = {"schema": "acutance/bands/1", "results": several, "rejected": []}
+    (tmp_path / "all.json").write_text(json.dumps(document), encoding="utf-8")
+    assert archive.import_documents(tmp_path / "all.json").new == 6
+    marks = {("1", "north"), ("2", "north"), ("2", "south")}
+    for rows in (archive.measurements(), archive.rejected()):
+        assert set(zip(rows["band"].tolist(), rows["target"].tolist(), strict=True)) == marks
+
+
 def test_bad_files_stop_no_other(archive, edge_record, tmp_path):
     good = tmp_path / "good.json"
     good.write_text(json.dumps(edge_record.document), encoding="utf-8")

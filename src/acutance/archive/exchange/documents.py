@@ -17,6 +17,7 @@ __all__ = ["Stated", "entries_of"]
 
 _OF_MEASUREMENTS = ("acutance/target/1", "acutance/comparison/1")
 _OF_RESULTS = ("acutance/regions/1", "acutance/bands/1")
+_MARKS = ("band", "region")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,12 +61,12 @@ def entries_of(document: Any, stated: Stated) -> Iterator[Entry]:
         yield entry_document.entry_of_document(document)
     elif schema == SCHEMA:
         yield _measured(document, stated)
-    elif schema in _OF_MEASUREMENTS:
-        yield from entries_of(_part(document, "measurements"), stated)
-        yield from (_rejected(one, stated) for one in _part(document, "rejected"))
-    elif schema in _OF_RESULTS:
-        yield from entries_of(_part(document, "results"), stated)
-        yield from (_rejected(one, stated) for one in _part(document, "rejected"))
+    elif schema in _OF_MEASUREMENTS or schema in _OF_RESULTS:
+        # A result of many regions and bands names them once, for all that is measured there.
+        marks = {name: document[name] for name in _MARKS if document.get(name) is not None}
+        parts = _part(document, "measurements" if schema in _OF_MEASUREMENTS else "results")
+        yield from entries_of([_marked(one, marks) for one in parts], stated)
+        yield from (_rejected(one, stated, marks) for one in _part(document, "rejected"))
     else:
         raise OptionError(
             f"its schema is {schema!r}: give what a measuring command printed with --json, or what "
@@ -78,6 +79,11 @@ def _part(document: Mapping[str, Any], name: str) -> list[Any]:
     if not isinstance(part, list):
         raise OptionError(f"the document lacks {name}: it was cut or changed")
     return part
+
+
+def _marked(document: Any, marks: Mapping[str, Any]) -> Any:
+    """A part of a document with the band and the region of the whole, unless it has its own."""
+    return {**marks, **document} if isinstance(document, Mapping) else document
 
 
 def _measured(document: Mapping[str, Any], stated: Stated) -> Entry:
@@ -97,17 +103,17 @@ def _measured(document: Mapping[str, Any], stated: Stated) -> Entry:
     return Entry(record=record, image=image, target=target, band=band)
 
 
-def _rejected(document: Mapping[str, Any], stated: Stated) -> Entry:
+def _rejected(document: Mapping[str, Any], stated: Stated, marks: Mapping[str, Any]) -> Entry:
     try:
         rejected = Rejected(document["stage"], document["reason"], document["values"])
-        path, region = rejected.values.get("path"), rejected.values.get("region")
+        path, own = rejected.values.get("path"), {**marks, **rejected.values}
     except (AttributeError, KeyError, TypeError) as error:
         raise OptionError(f"a rejection of the document is damaged ({error!r})") from error
     image = ImageEntry(
         path=path, sensor=stated.sensor, level=stated.level, acquired=stated.acquired
     )
-    target = stated.target if stated.target is not None else region
+    target = stated.target if stated.target is not None else own.get("region")
     if isinstance(target, str):
         target = TargetEntry(name=target, kind="unknown")
-    band = stated.band if stated.band is not None else rejected.values.get("band")
+    band = stated.band if stated.band is not None else own.get("band")
     return Entry(rejected=rejected, image=image, target=target, band=band)
