@@ -178,8 +178,7 @@ def _texts(images: str | Sequence[str]) -> tuple[str, ...]:
 def _work(plan: BatchPlan) -> BatchWork:
     """Targets with their options."""
     if isinstance(plan.targets, Mapping):
-        crs = plan.targets.get("crs")
-        targets = targets_of(plan.targets, "targets", crs if isinstance(crs, str) else None)
+        targets = targets_of(plan.targets, "targets")
     else:
         targets = read_targets(plan.targets)
     chosen = choose_options(targets, plan.options)
