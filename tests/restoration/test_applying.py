@@ -426,6 +426,19 @@ def test_dark_data_do_not_become_fill(swath, sharpening):
     assert counts.off_nodata > 0
 
 
+@pytest.mark.parametrize("dtype", [np.uint8, np.int8, np.float32])
+def test_black_data_beside_black_fill_stay_dark(sharpening, dtype):
+    """Of the value of fill, they were moved below the lowest value of the type: to the highest."""
+    lowest = 0 if dtype is np.float32 else np.iinfo(dtype).min
+    image = (lowest + np.random.default_rng(2).integers(55, 66, (150, 150))).astype(dtype)
+    image[:50] = image[90:110, 70:90] = lowest
+    found, counts = restore_array(image, sharpening)
+    assert counts.fill == 50 * 150
+    assert counts.off_nodata > 0
+    assert (found[50:] != lowest).all()
+    assert found[95:105, 75:85].max() < lowest + 12
+
+
 def test_an_image_without_data_is_not_written(tmp_path, sharpening):
     write(tmp_path / "a.tif", np.full((60, 60), np.nan, np.float32))
     with pytest.raises(ac.NoDataError, match="no pixel of"):

@@ -208,11 +208,13 @@ def _not_above(top: int, dtype: np.dtype[Any]) -> float:
 
 
 def _beside(own: NDArray[Any], kind: StoredType) -> NDArray[Any]:
-    """The value next to that of nodata, towards what a pixel was."""
+    """The value next to that of nodata, towards what a pixel was; above where it was that value.
+
+    Pixels with data have that value where it is of fill that the image does not declare.
+    """
     assert kind.nodata is not None
     nodata = kind.dtype.type(kind.nodata)
     if kind.dtype.kind in "iu":
-        above = own > nodata
-        step = np.where(above, 1, -1)
+        step = np.where((own < nodata) | (nodata == np.iinfo(kind.dtype).max), -1, 1)
         return np.asarray((int(nodata) + step).astype(kind.dtype))
-    return np.asarray(np.nextafter(nodata, own))
+    return np.asarray(np.nextafter(nodata, np.where(own == nodata, np.inf, own)).astype(kind.dtype))
