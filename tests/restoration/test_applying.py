@@ -439,6 +439,19 @@ def test_black_data_beside_black_fill_stay_dark(sharpening, dtype):
     assert found[95:105, 75:85].max() < lowest + 12
 
 
+def test_saturated_counts_stay_where_the_scale_is_negative(sharpening, tmp_path):
+    image = np.random.default_rng(2).integers(500, 600, (60, 60)).astype(np.uint16)
+    image[30, 30:33] = 1023
+    write(tmp_path / "a.tif", image)
+    with open_quietly(tmp_path / "a.tif", "r+") as dataset:
+        dataset.scales, dataset.offsets = (-0.1,), (200.0,)
+        dataset.update_tags(SPECIAL_VALUE_SATURATED="1023")
+    done = ac.restore(tmp_path / "a.tif", sharpening, out=tmp_path / "b.tif")
+    assert done.bands[1].saturated == 3
+    with open_quietly(tmp_path / "b.tif") as dataset:
+        assert np.array_equal(dataset.read(1)[30, 30:33], [1023] * 3)
+
+
 def test_an_image_without_data_is_not_written(tmp_path, sharpening):
     write(tmp_path / "a.tif", np.full((60, 60), np.nan, np.float32))
     with pytest.raises(ac.NoDataError, match="no pixel of"):

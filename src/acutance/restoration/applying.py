@@ -236,7 +236,7 @@ def _restore_file(
             np.dtype(one.dtype),
             _left_alone(one, getattr(one.source, "nodata", None), fills[band]),
             saturation,
-            _count(one),
+            getattr(one.source, "largest_count", None),
         )
         for band, one in images.items()
     }
@@ -326,12 +326,6 @@ def _stored(image: Image, value: float) -> float:
     """How a value, in the units an image is read in, is stored."""
     source = image.source
     return float((value - getattr(source, "offset", 0.0)) / getattr(source, "scale", 1.0))
-
-
-def _count(image: Image) -> float | None:
-    """The largest stored count, which an image has in the units it is read in."""
-    level = image.saturation_level
-    return None if level is None else _stored(image, level)
 
 
 def _require_fitting(shape: tuple[int, ...], filter: RestorationFilter) -> None:
