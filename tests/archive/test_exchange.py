@@ -210,6 +210,31 @@ def test_stac_items_keep_to_the_schema(several, tmp_path, bars_record):
     assert list(check.iter_errors(broken))
 
 
+@pytest.mark.parametrize(
+    ("lons", "west", "east"),
+    [
+        ([179.999, -179.999], 179.999, -179.999),
+        ([-179.5, 179.5, 178.0], 178.0, -179.5),
+        ([180.5, 179.5], 179.5, -179.5),
+        ([-70.0, 20.0, -10.0], -70.0, 20.0),
+        ([5.0, 5.0], 5.0, 5.0),
+    ],
+)
+def test_the_box_of_a_stac_item_is_narrow_beyond_the_antimeridian(
+    entry_of, tmp_path, lons, west, east
+):
+    pystac = pytest.importorskip("pystac")
+    targets = [
+        TargetEntry(name=f"T{number}", kind="edge", lon=lon, lat=-17.0 + number)
+        for number, lon in enumerate(lons)
+    ]
+    with Archive(tmp_path / "kept.db") as archive:
+        archive.add_entries([entry_of(0, target=one) for one in targets])
+        archive.export(tmp_path / "stac", to="stac")
+    (item,) = pystac.Catalog.from_file(str(tmp_path / "stac" / "catalog.json")).get_items()
+    assert item.bbox == [west, -17.0, east, -18.0 + len(lons)]
+
+
 def test_stac_needs_a_date_and_a_new_folder(archive, edge_record, entry_of, tmp_path):
     archive.add(edge_record)
     with pytest.raises(OptionError, match="has no date"):
