@@ -253,6 +253,13 @@ def test_other_pixels_and_another_band_are_refused(sharpening, tmp_path):
         ac.restore(several, sharpening, out=out, bands=2)
     assert list(ac.restore(several, sharpening, out=out, bands="all").bands) == [1, 2, 3]
     assert list(ac.restore(several, sharpening, out=out).bands) == [1]
+    for stated in (np.int64(1), [np.uint8(1)], np.array([1], np.uint8)):
+        assert list(ac.restore(several, sharpening, out=out, bands=stated).bands) == [1]
+    assert len(ac.restore(several, sharpening, out=out, bands=np.array([1, 2]),
+                          accept_mismatch=True).bands) == 2  # fmt: skip
+    for wrong in ("pan", 1.5, [1, "2"]):
+        with pytest.raises(ac.OptionError, match="give numbers from 1, or 'all'"):
+            ac.restore(several, sharpening, out=out, bands=wrong)
     with pytest.raises(ac.ImageError, match="band 7"):
         ac.restore(several, sharpening, out=out, bands=7, accept_mismatch=True)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import os
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -157,7 +158,7 @@ def _wanted(
         "images": None if images is None else _texts(images),
         "targets": targets if isinstance(targets, Mapping | None) else os.fspath(targets),
         "archive": None if archive is None else os.fspath(archive),
-        "bands": None if bands is None else tuple(bands),
+        "bands": None if bands is None else _bands(bands),
         "workers": workers,
         "dask": scheduler,
     }
@@ -173,6 +174,14 @@ def _texts(images: str | Sequence[str]) -> tuple[str, ...]:
     if isinstance(images, str | os.PathLike):
         return (os.fspath(images),)
     return tuple(os.fspath(one) for one in images)
+
+
+def _bands(bands: Sequence[str | int]) -> tuple[str | int, ...]:
+    """Names and numbers, whatever kind of integers they were given as."""
+    try:
+        return tuple(one if isinstance(one, str) else operator.index(one) for one in bands)
+    except TypeError:
+        raise OptionError(f"bands are {bands!r:.80}: give a list of names or numbers") from None
 
 
 def _work(plan: BatchPlan) -> BatchWork:

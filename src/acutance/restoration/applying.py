@@ -228,7 +228,7 @@ def _restore_file(
     _require_fitting(first.shape, filter)
     earlier = stored_tags(path)
     if not accept_mismatch:
-        require_match(first, filter, chosen, bands == "all")
+        require_match(first, filter, chosen, isinstance(bands, str))
         require_unrestored(path, earlier)
     fills = {band: find_swath_fill(one) for band, one in images.items()}
     kinds = {
