@@ -324,7 +324,7 @@ def test_a_sensor_without_one_of_the_main_numbers_has_its_page(tmp_path):
         archive.add_entries(published_entries("quickbird-2003"))
         page = sensor_page(archive, "QB02")
         assert "FWHM [px]" in page
-        assert "nan" not in re.sub("<svg.*?</svg>|data:[^\"]*", "", page, flags=re.DOTALL)
+        assert "nan" not in re.sub('<svg.*?</svg>|data:[^"]*', "", page, flags=re.DOTALL)
         with pytest.raises(NothingSelectedError, match="rer: choose mtf_nyquist or fwhm_px"):
             sensor_page(archive, "QB02", metric="rer")
         with pytest.raises(OptionError, match="no measurement has a value of rer"):
