@@ -33,6 +33,7 @@ from acutance.raster.region import Box
 __all__ = [
     "CACHE_BYTES",
     "DatasetPixels",
+    "declared_nodata",
     "open_dataset",
     "open_quietly",
     "opened_dataset",
@@ -120,7 +121,7 @@ def open_dataset(path: str, band: int, gsd: Gsd | None, nodata: float | None) ->
             source=DatasetPixels(
                 path=path,
                 band=band,
-                nodata=_nodata(dataset, band) if nodata is None else nodata,
+                nodata=declared_nodata(dataset, band) if nodata is None else nodata,
                 has_mask=MaskFlags.per_dataset in flags and MaskFlags.alpha not in flags,
                 alpha_band=_alpha_band(dataset, band),
                 scale=scale,
@@ -238,8 +239,8 @@ def _alpha_band(dataset: Any, band: int) -> int | None:
     return None
 
 
-def _nodata(dataset: Any, band: int) -> float | None:
-    """The nodata value of the band, or of the product (Sentinel-2)."""
+def declared_nodata(dataset: Any, band: int) -> float | None:
+    """The nodata value of a band, from 1, of an open file, or of the product (Sentinel-2)."""
     value: float | None = dataset.nodatavals[band - 1]
     return _whole_number(dataset.tags().get("SPECIAL_VALUE_NODATA")) if value is None else value
 

@@ -17,7 +17,12 @@ from numpy.typing import ArrayLike, NDArray
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ImageError, NoDataError, OptionError
 from acutance.raster import Box, Image, SwathFill, find_swath_fill, open_image
-from acutance.raster.pixels import equals_nodata, largest_count, require_image_array
+from acutance.raster.pixels import (
+    equals_nodata,
+    largest_count,
+    require_image_array,
+    storable_nodata,
+)
 from acutance.restoration.filter_match import (
     chosen_bands,
     match_notes,
@@ -182,7 +187,10 @@ def restore_array(
     view = Image.from_array(array, nodata=nodata)
     fill = find_swath_fill(view)
     kind = _stored_type(
-        raw.dtype, _left_alone(view, nodata, fill), saturation, largest_count(raw.dtype)
+        raw.dtype,
+        _left_alone(view, storable_nodata(raw.dtype, nodata), fill),
+        saturation,
+        largest_count(raw.dtype),
     )
     counts = PixelCounts()
     if fill is not None:
@@ -234,7 +242,7 @@ def _restore_file(
     kinds = {
         band: _stored_type(
             np.dtype(one.dtype),
-            _left_alone(one, getattr(one.source, "nodata", None), fills[band]),
+            _left_alone(one, _stored_nodata(one), fills[band]),
             saturation,
             getattr(one.source, "largest_count", None),
         )
@@ -258,11 +266,11 @@ def _restore_file(
         return pixels
 
     tags = restored_tags(_tag(filter, chosen), earlier)
-    rewrite_image(
+    notes = rewrite_image(
         path, out, change, bands=chosen, margin_px=reach, nodata=nodata,
         tags=tags, progress=progress,
     )  # fmt: skip
-    return RestoredImage(out, counts, match_notes(first, filter, chosen))
+    return RestoredImage(out, counts, match_notes(first, filter, chosen) + notes)
 
 
 def _restore_npy(
@@ -311,6 +319,11 @@ def _stored_type(
             raise OptionError(f"saturation is {saturation!r}: give a finite stored value")
         return StoredType(dtype, nodata, float(saturation))
     return StoredType(dtype, nodata, largest)
+
+
+def _stored_nodata(image: Image) -> float | None:
+    """The nodata value of an image of a file, as its pixels have it."""
+    return storable_nodata(np.dtype(image.dtype), getattr(image.source, "nodata", None))
 
 
 def _left_alone(image: Image, nodata: float | None, fill: SwathFill | None) -> float | None:
