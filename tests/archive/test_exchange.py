@@ -277,6 +277,31 @@ def test_documents_of_commands_are_imported(archive, edge_record, tmp_path):
     assert archive.import_documents(tmp_path, sensor="K3", acquired="2026-01-01").new == 0
 
 
+def test_measurements_of_a_target_have_the_band_and_region_of_their_target(
+    archive, edge_record, tmp_path
+):
+    """With --all a result is a target, and its measurements and rejections have no marks."""
+    other = {**edge_record.document, "measured_at": "2020-01-01T00:00:00+00:00"}
+    lost = {"stage": "measurement", "reason": "no edge", "values": {"row": 3}}
+    target = {"schema": "acutance/target/1", "measurements": [other], "rejected": [lost]}
+    compared = {"schema": "acutance/comparison/1", "measurements": [other], "rejected": []}
+    bands = {
+        "schema": "acutance/bands/1",
+        "results": [
+            {"band": "red", "region": "north", **target},
+            {"band": "nir", "region": "south", **compared},
+        ],
+        "rejected": [],
+    }
+    (tmp_path / "bands.json").write_text(json.dumps(bands), encoding="utf-8")
+    archive.import_documents(tmp_path / "bands.json")
+    rows, rejected = archive.measurements(), archive.rejected()
+    assert set(zip(rows["band"], rows["target"], strict=True)) == {
+        ("red", "north"), ("nir", "south"),
+    }  # fmt: skip
+    assert (rejected["band"].tolist(), rejected["target"].tolist()) == (["red"], ["north"])
+
+
 def test_bad_files_stop_no_other(archive, edge_record, tmp_path):
     good = tmp_path / "good.json"
     good.write_text(json.dumps(edge_record.document), encoding="utf-8")

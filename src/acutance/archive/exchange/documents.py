@@ -17,6 +17,8 @@ __all__ = ["Stated", "entries_of"]
 
 _OF_MEASUREMENTS = ("acutance/target/1", "acutance/comparison/1")
 _OF_RESULTS = ("acutance/regions/1", "acutance/bands/1")
+_MARKS = ("band", "region")
+"""What such documents mark every result with."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,21 +53,27 @@ def entries_of(document: Any, stated: Stated) -> Iterator[Entry]:
     OptionError
         If it is none of them.
     """
+    yield from _entries(document, stated, {})
+
+
+def _entries(document: Any, stated: Stated, marks: Mapping[str, Any]) -> Iterator[Entry]:
+    """Entries of a document, or of a part of one that is marked with its band and region."""
     if isinstance(document, list):
         for one in document:
-            yield from entries_of(one, stated)
+            yield from _entries(one, stated, marks)
         return
+    if isinstance(document, Mapping):
+        own = {name: document[name] for name in _MARKS if document.get(name) is not None}
+        marks = {**marks, **own}
     schema = document.get("schema") if isinstance(document, Mapping) else None
     if schema == entry_document.SCHEMA:
         yield entry_document.entry_of_document(document)
     elif schema == SCHEMA:
-        yield _measured(document, stated)
-    elif schema in _OF_MEASUREMENTS:
-        yield from entries_of(_part(document, "measurements"), stated)
-        yield from (_rejected(one, stated) for one in _part(document, "rejected"))
-    elif schema in _OF_RESULTS:
-        yield from entries_of(_part(document, "results"), stated)
-        yield from (_rejected(one, stated) for one in _part(document, "rejected"))
+        yield _measured({**document, **marks}, stated)
+    elif schema in _OF_MEASUREMENTS or schema in _OF_RESULTS:
+        name = "measurements" if schema in _OF_MEASUREMENTS else "results"
+        yield from _entries(_part(document, name), stated, marks)
+        yield from (_rejected(one, stated, marks) for one in _part(document, "rejected"))
     else:
         raise OptionError(
             f"its schema is {schema!r}: give what a measuring command printed with --json, or what "
@@ -97,9 +105,10 @@ def _measured(document: Mapping[str, Any], stated: Stated) -> Entry:
     return Entry(record=record, image=image, target=target, band=band)
 
 
-def _rejected(document: Mapping[str, Any], stated: Stated) -> Entry:
+def _rejected(document: Mapping[str, Any], stated: Stated, marks: Mapping[str, Any]) -> Entry:
     try:
-        rejected = Rejected(document["stage"], document["reason"], document["values"])
+        values = {**marks, **document["values"]}
+        rejected = Rejected(document["stage"], document["reason"], values)
         path, region = rejected.values.get("path"), rejected.values.get("region")
     except (AttributeError, KeyError, TypeError) as error:
         raise OptionError(f"a rejection of the document is damaged ({error!r})") from error
