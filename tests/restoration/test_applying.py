@@ -235,6 +235,20 @@ def test_a_numpy_file_becomes_one(landscape, sharpening, tmp_path):
         ac.restore(path, sharpening, out=tmp_path / "b.tif")
 
 
+def test_a_numpy_file_that_is_interrupted_leaves_nothing(
+    landscape, sharpening, tmp_path, monkeypatch
+):
+    def cut(file, _):
+        file.write(b"half")
+        raise KeyboardInterrupt
+
+    np.save(tmp_path / "a.npy", landscape)
+    monkeypatch.setattr(np, "save", cut)
+    with pytest.raises(KeyboardInterrupt):
+        ac.restore(tmp_path / "a.npy", sharpening, out=tmp_path / "b.npy")
+    assert [one.name for one in tmp_path.iterdir()] == ["a.npy"]
+
+
 def scene(tmp_path, bands=1, gsd=0.7, **profile):
     path = tmp_path / f"scene-{bands}-{gsd}.tif"
     image = np.random.default_rng(1).integers(100, 3000, (bands, 40, 50)).astype(np.uint16)

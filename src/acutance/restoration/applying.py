@@ -7,6 +7,7 @@ import math
 import os
 import warnings
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, overload
@@ -293,8 +294,11 @@ def _restore_npy(
             np.save(file, pixels)
         os.replace(part, os.path.realpath(out))
     except OSError as error:
-        part.unlink(missing_ok=True)
         raise ImageError(f"{out} cannot be written ({error.strerror or error})") from error
+    finally:
+        # Also where the run is interrupted: a part of an image is of no use.
+        with suppress(OSError):
+            part.unlink()
     return RestoredImage(out, {1: counts}, match_notes(image, filter, [1]))
 
 
