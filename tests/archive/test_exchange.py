@@ -210,6 +210,31 @@ def test_stac_items_keep_to_the_schema(several, tmp_path, bars_record):
     assert list(check.iter_errors(broken))
 
 
+@pytest.mark.parametrize(
+    ("lons", "west", "east"),
+    [
+        ([179.999, -179.999], 179.999, -179.999),
+        ([-179.5, 179.5, 178.0], 178.0, -179.5),
+        ([180.5, 179.5], 179.5, -179.5),
+        ([-70.0, 20.0, -10.0], -70.0, 20.0),
+        ([5.0, 5.0], 5.0, 5.0),
+    ],
+)
+def test_the_box_of_a_stac_item_is_narrow_beyond_the_antimeridian(
+    entry_of, tmp_path, lons, west, east
+):
+    pystac = pytest.importorskip("pystac")
+    targets = [
+        TargetEntry(name=f"T{number}", kind="edge", lon=lon, lat=-17.0 + number)
+        for number, lon in enumerate(lons)
+    ]
+    with Archive(tmp_path / "kept.db") as archive:
+        archive.add_entries([entry_of(0, target=one) for one in targets])
+        archive.export(tmp_path / "stac", to="stac")
+    (item,) = pystac.Catalog.from_file(str(tmp_path / "stac" / "catalog.json")).get_items()
+    assert item.bbox == [west, -17.0, east, -18.0 + len(lons)]
+
+
 def test_stac_needs_a_date_and_a_new_folder(archive, edge_record, entry_of, tmp_path):
     archive.add(edge_record)
     with pytest.raises(OptionError, match="has no date"):
@@ -252,25 +277,29 @@ def test_documents_of_commands_are_imported(archive, edge_record, tmp_path):
     assert archive.import_documents(tmp_path, sensor="K3", acquired="2026-01-01").new == 0
 
 
-def test_all_edges_of_several_regions_keep_region_and_band(archive, edge_record, tmp_path):
-    """The result of a region names it once; bands and targets were mixed in trends."""
-    number = edge_record.document["mtf_nyquist"]
-    rejected = {"stage": "fit", "reason": "no edge", "values": {"row": 3}}
-
-    def found(band, region, value):
-        one = {**edge_record.document, "mtf_nyquist": {**number, "value": value}}
-        return {
-            "schema": "acutance/target/1", "band": band, "region": region,
-            "measurements": [one], "rejected": [rejected],
-        }  # fmt: skip
-
-    several = [found("1", "north", 0.2), found("2", "north", 0.3), found("2", "south", 0.4)]
-    document = {"schema": "acutance/bands/1", "results": several, "rejected": []}
-    (tmp_path / "all.json").write_text(json.dumps(document), encoding="utf-8")
-    assert archive.import_documents(tmp_path / "all.json").new == 6
-    marks = {("1", "north"), ("2", "north"), ("2", "south")}
-    for rows in (archive.measurements(), archive.rejected()):
-        assert set(zip(rows["band"].tolist(), rows["target"].tolist(), strict=True)) == marks
+def test_measurements_of_a_target_have_the_band_and_region_of_their_target(
+    archive, edge_record, tmp_path
+):
+    """With --all a result is a target, and its measurements and rejections have no marks."""
+    other = {**edge_record.document, "measured_at": "2020-01-01T00:00:00+00:00"}
+    lost = {"stage": "measurement", "reason": "no edge", "values": {"row": 3}}
+    target = {"schema": "acutance/target/1", "measurements": [other], "rejected": [lost]}
+    compared = {"schema": "acutance/comparison/1", "measurements": [other], "rejected": []}
+    bands = {
+        "schema": "acutance/bands/1",
+        "results": [
+            {"band": "red", "region": "north", **target},
+            {"band": "nir", "region": "south", **compared},
+        ],
+        "rejected": [],
+    }
+    (tmp_path / "bands.json").write_text(json.dumps(bands), encoding="utf-8")
+    archive.import_documents(tmp_path / "bands.json")
+    rows, rejected = archive.measurements(), archive.rejected()
+    assert set(zip(rows["band"], rows["target"], strict=True)) == {
+        ("red", "north"), ("nir", "south"),
+    }  # fmt: skip
+    assert (rejected["band"].tolist(), rejected["target"].tolist()) == (["red"], ["north"])
 
 
 def test_bad_files_stop_no_other(archive, edge_record, tmp_path):

@@ -5,11 +5,12 @@ from __future__ import annotations
 import json
 
 import pytest
-from surveyed_field import EDGE, feature, line_of, survey
+from surveyed_field import EDGE, GSD_M, PULSE, feature, line_of, survey
 
 from acutance.archive import Archive, ImageCorrection
 from acutance.batch import BatchPlan
 from acutance.batch.plan import StatedOfImages
+from acutance.geometry import Line
 
 
 @pytest.fixture
@@ -117,6 +118,70 @@ def test_documents_that_are_stated_later_are_compared(write_field, run, run_stat
     run(image)
     found = run_stated(image, metadata=(str(document),))
     assert found.kept_otherwise == {str(image): {"sensor": ("SIM-1", "OTHER")}}
+
+
+IMD = """version = "R";
+bandId = "P";
+BEGIN_GROUP = IMAGE_1
+ satId = "QB02";
+END_GROUP = IMAGE_1
+BEGIN_GROUP = MAP_PROJECTED_PRODUCT
+ productGSD = {};
+END_GROUP = MAP_PROJECTED_PRODUCT
+END;
+"""
+
+
+def pulse_in_pixels(name, **width):
+    """The pulse of the field, for images without a map."""
+    across = Line(PULSE.row, PULSE.col, PULSE.normal_deg)
+    ends = [[end.col, end.row] for end in (across.slid(-20.0), across.slid(20.0))]
+    return feature(name, "pulse", "LineString", ends, position_std_m=None, **width)
+
+
+def test_a_document_that_arrives_later_counts_for_what_was_rejected_without_it(
+    write_field, run, rows, tmp_path, monkeypatch
+):
+    image = write_field(0, crs=None, transform=None, tags={})
+    targets = survey(
+        pulse_in_pixels("in metres", width_m=3 * GSD_M),
+        pulse_in_pixels("in pixels", width_px=3.0),
+        crs="pixel",
+    )
+    found = run(image, targets=targets)
+    assert (found.measured, found.kept_otherwise) == (1, {})
+    assert "needs a GSD" in rows()[1]["reason"][0]
+    assert run(image, targets=targets).run is None
+    image.with_suffix(".IMD").write_text(IMD.format(GSD_M))
+    found = run(image, targets=targets)
+    assert (found.measured, found.rejected, found.kept, found.done_before) == (2, 0, 1, 1)
+    told = {str(image): {"sensor": (None, "QB02"), "gsd_m": (None, (GSD_M, GSD_M))}}
+    assert found.kept_otherwise == told
+    measured, rejected = rows()
+    assert len(rejected) == 0
+    assert dict(zip(measured["target"], measured["sensor"], strict=True)) == {
+        "in metres": "QB02", "in pixels": None,
+    }  # fmt: skip
+    # Whether or not the image is opened again, nothing more is done, and the same is told.
+    found = run(image, targets=targets)
+    assert (found.run, found.kept_otherwise) == (None, told)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "another"))
+    found = run(image, targets=targets)
+    assert (found.kept, found.done_before, found.kept_otherwise) == (0, 2, told)
+    with Archive(tmp_path / "kept.db") as archive:
+        archive.correct_images([ImageCorrection(image=str(image), sensor="X", gsd_m=GSD_M)])
+    assert run(image, targets=targets).kept_otherwise == {}
+
+
+def test_another_archive_has_its_rejections_done_again_too(write_field, run, tmp_path):
+    """The image is known with its document by then, and is opened for them."""
+    image = write_field(0, crs=None, transform=None, tags={})
+    targets = survey(pulse_in_pixels("pulse", width_m=3 * GSD_M), crs="pixel")
+    assert run(image, targets=targets).measured == 0
+    image.with_suffix(".IMD").write_text(IMD.format(GSD_M))
+    assert run(image, targets=targets, archive=tmp_path / "other.db").measured == 1
+    found = run(image, targets=targets)
+    assert (found.measured, found.rejected, found.kept) == (1, 0, 1)
 
 
 def test_a_date_that_is_stated_later_counts(write_field, run, run_stated, rows):

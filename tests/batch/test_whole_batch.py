@@ -282,6 +282,9 @@ def test_bands_by_name_and_number(field_pixels, tmp_path, run, rows, write_field
         ("all", "nir"), ("all", "pan"), ("all", "red"), ("named", "nir"), ("second", "red"),
     ]  # fmt: skip
     assert ac.run_batch(plan, bands=["red"]).kept == 0
+    assert ac.run_batch(plan, bands=[np.int64(2), "nir"]).to_dict()["missing_bands"] == []
+    with pytest.raises(OptionError, match="list of names or numbers"):
+        ac.run_batch(plan, bands=[2.5])
     named = ac.run_batch(plan, bands=["red", "blue", 4])
     assert named.measured == 2
     assert named.missing_bands == ("blue", 4)

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from acutance import optics
+from acutance.batch.summary import BatchSummary
+from acutance.cli.batch import _kept_otherwise
 from acutance.raster import write_geotiff
 
 SENSOR = optics.Sensor([optics.Gaussian(0.4), optics.Detector()], gsd_m=0.7)
@@ -202,3 +204,13 @@ def test_all_faults_of_options_are_named_and_no_archive_is_made(acutance, given,
                  "there is no check 'colour'", "target_softness_m is {'value': 1}"):  # fmt: skip
         assert part in done.stderr
     assert not (tmp_path / "new.db").exists()
+
+
+def test_rows_without_metres_are_told_how_they_get_them():
+    found = BatchSummary(
+        archive="kept.db", images=1,
+        kept_otherwise={"a.tif": {"gsd_m": (None, (2.8, 2.8)), "sensor": (None, "QB02")}},
+    )  # fmt: skip
+    *_, advice = _kept_otherwise(found)
+    assert "acutance archive correct kept.db --image a.tif --sensor QB02;" in advice
+    assert "acutance archive remove kept.db --image a.tif, and the same batch again" in advice

@@ -238,6 +238,17 @@ def test_scale_and_offset_apply_to_values_and_saturation(pixels, write_raster):
     assert np.array_equal(values, cut(array) * 0.5 - 100)
 
 
+def test_a_negative_scale_leaves_no_value_at_the_limit(pixels, write_raster):
+    """The largest count is the smallest value there: every pixel was saturated."""
+
+    def declare(dataset):
+        dataset.scales, dataset.offsets = (-1.0,), (65535.0,)
+
+    image = open_image(write_raster("a.tif", 65535 - pixels.astype(np.uint16), edit=declare))
+    assert np.array_equal(image.read(), pixels)
+    assert (image.saturation_level, image.source.largest_count) == (None, 65535)
+
+
 def test_a_scale_of_nothing_is_refused(pixels, write_raster):
     def declare(dataset):
         dataset.scales = (0.0,)

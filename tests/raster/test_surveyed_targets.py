@@ -48,6 +48,16 @@ def test_a_file(tmp_path):
     assert pickle.loads(pickle.dumps(star)).definition == star.definition
 
 
+def test_a_document_in_memory_declares_its_crs_as_a_file_does(tmp_path):
+    path = tmp_path / "targets.geojson"
+    for crs in ("EPSG:32631", {"type": "name", "properties": {"name": "EPSG:32631"}}):
+        document = collection(feature(points=((5e5, 5e6), (500010, 5e6))), crs=crs)
+        path.write_text(json.dumps(document))
+        (kept,), (read,) = targets_of(document, "targets"), read_targets(str(path))
+        assert (kept.crs, kept.definition) == ("EPSG:32631", read.definition)
+    refused(collection(feature(), crs={"type": "name"}), '"crs" without a name')
+
+
 def test_without_a_crs_coordinates_are_degrees():
     (target,) = targets_of(feature(), "targets")
     assert (target.crs, target.name, target.in_pixels) == ("OGC:CRS84", "1", False)

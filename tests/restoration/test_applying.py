@@ -254,6 +254,20 @@ def test_a_numpy_file_becomes_one(landscape, sharpening, tmp_path):
         ac.restore(path, sharpening, out=tmp_path / "b.tif")
 
 
+def test_a_numpy_file_that_is_interrupted_leaves_nothing(
+    landscape, sharpening, tmp_path, monkeypatch
+):
+    def cut(file, _):
+        file.write(b"half")
+        raise KeyboardInterrupt
+
+    np.save(tmp_path / "a.npy", landscape)
+    monkeypatch.setattr(np, "save", cut)
+    with pytest.raises(KeyboardInterrupt):
+        ac.restore(tmp_path / "a.npy", sharpening, out=tmp_path / "b.npy")
+    assert [one.name for one in tmp_path.iterdir()] == ["a.npy"]
+
+
 def scene(tmp_path, bands=1, gsd=0.7, **profile):
     path = tmp_path / f"scene-{bands}-{gsd}.tif"
     image = np.random.default_rng(1).integers(100, 3000, (bands, 40, 50)).astype(np.uint16)
@@ -272,6 +286,13 @@ def test_other_pixels_and_another_band_are_refused(sharpening, tmp_path):
         ac.restore(several, sharpening, out=out, bands=2)
     assert list(ac.restore(several, sharpening, out=out, bands="all").bands) == [1, 2, 3]
     assert list(ac.restore(several, sharpening, out=out).bands) == [1]
+    for stated in (np.int64(1), [np.uint8(1)], np.array([1], np.uint8)):
+        assert list(ac.restore(several, sharpening, out=out, bands=stated).bands) == [1]
+    assert len(ac.restore(several, sharpening, out=out, bands=np.array([1, 2]),
+                          accept_mismatch=True).bands) == 2  # fmt: skip
+    for wrong in ("pan", 1.5, [1, "2"]):
+        with pytest.raises(ac.OptionError, match="give numbers from 1, or 'all'"):
+            ac.restore(several, sharpening, out=out, bands=wrong)
     with pytest.raises(ac.ImageError, match="band 7"):
         ac.restore(several, sharpening, out=out, bands=7, accept_mismatch=True)
 
@@ -443,6 +464,121 @@ def test_dark_data_do_not_become_fill(swath, sharpening):
     found, counts = restore_array(image, sharpening)
     assert (found[~outside] > 0).all()
     assert counts.off_nodata > 0
+
+
+BANDS_OF_THEIR_OWN = """<VRTDataset rasterXSize="90" rasterYSize="90">
+<SRS>EPSG:32631</SRS><GeoTransform>500000, 0.7, 0, 5000000, 0, -0.7</GeoTransform>
+{}</VRTDataset>"""
+ONE_BAND = """<VRTRasterBand dataType="{kind}" band="{number}">{nodata}
+<SimpleSource><SourceFilename relativeToVRT="1">band-{number}.tif</SourceFilename></SimpleSource>
+</VRTRasterBand>"""
+
+
+@pytest.fixture
+def write_bands(tmp_path):
+    """Write a VRT of bands, each with its own nodata value or none."""
+
+    def write_vrt(bands, values):
+        parts = []
+        for number, (band, nodata) in enumerate(zip(bands, values, strict=True), 1):
+            write(tmp_path / f"band-{number}.tif", band)
+            kind = {"uint8": "Byte", "float32": "Float32"}[band.dtype.name]
+            declared = "" if nodata is None else f"<NoDataValue>{nodata}</NoDataValue>"
+            parts.append(ONE_BAND.format(kind=kind, number=number, nodata=declared))
+        path = tmp_path / "bands.vrt"
+        path.write_text(BANDS_OF_THEIR_OWN.format("".join(parts)))
+        return path
+
+    return write_vrt
+
+
+@pytest.mark.parametrize("bands", ["all", 1])
+def test_bands_with_different_nodata_get_a_common_one(sharpening, tmp_path, write_bands, bands):
+    """A GeoTIFF has one: fill of the others became data, and data of its value were lost."""
+    rng = np.random.default_rng(5)
+    first, second, third = rng.integers(60, 190, (3, 90, 90)).astype(np.uint8)
+    first[:20], second[:30], second[60, 40:45], third[:9] = 0, 255, 0, 0
+    path, out = write_bands([first, second, third], [0, 255, None]), tmp_path / "out.tif"
+    done = ac.restore(path, sharpening, out=out, bands=bands, accept_mismatch=True)
+    with open_quietly(out) as dataset:
+        assert dataset.nodatavals == (0, 0, 0)
+        found = dataset.read()
+    assert np.array_equal(found[0] == 0, first == 0)
+    assert np.array_equal(found[1] == 0, second == 255)
+    assert (found[2] > 0).all()
+    assert found[1, 60, 40:45].max() < 60
+    note = done.notes[-1]
+    assert note.startswith("the bands have different nodata values (0, 255, none)")
+    assert "in the new file all have 0" in note
+    if bands == 1:
+        assert note.endswith("moved by one step: 5 of band 2, 810 of band 3")
+        assert np.array_equal(found[1][30:], np.maximum(second[30:], 1))
+
+
+def test_floats_with_different_nodata_get_nan(sharpening, tmp_path, write_bands):
+    first, second = np.random.default_rng(5).normal(100, 9, (2, 90, 90)).astype(np.float32)
+    first[:20], second[:30], second[60, 40:45] = -9999, np.nan, -9999
+    path, out = write_bands([first, second], [-9999, "nan"]), tmp_path / "out.tif"
+    done = ac.restore(path, sharpening, out=out, accept_mismatch=True)
+    with open_quietly(out) as dataset:
+        assert np.isnan(dataset.nodatavals).all()
+        found = dataset.read()
+    assert np.array_equal(np.isnan(found[0]), first == -9999)
+    assert np.array_equal(found[1], second, equal_nan=True)
+    assert done.notes[-1].endswith("(-9999, nan), in the new file all have nan")
+
+
+def test_a_product_declares_the_nodata_of_its_bands(sharpening, tmp_path):
+    image = np.random.default_rng(1).integers(100, 3000, (60, 60)).astype(np.uint16)
+    image[20:30, 20:30] = 7
+    write(tmp_path / "a.tif", image)
+    with open_quietly(tmp_path / "a.tif", "r+") as dataset:
+        dataset.update_tags(SPECIAL_VALUE_NODATA="7")
+    done = ac.restore(tmp_path / "a.tif", sharpening, out=tmp_path / "b.tif")
+    assert done.bands[1].nodata == 100
+    with open_quietly(tmp_path / "b.tif") as dataset:
+        assert np.array_equal(dataset.read(1) == 7, image == 7)
+        assert dataset.nodata == 7
+
+
+@pytest.mark.parametrize("nodata", [-9999, 70000, 0.5])
+def test_a_nodata_value_that_no_pixel_can_have(sharpening, tmp_path, nodata):
+    image = np.random.default_rng(1).integers(0, 300, (60, 60)).astype(np.uint16)
+    found, counts = restore_array(image, sharpening, nodata=nodata)
+    expected, _ = restore_array(image, sharpening)
+    assert np.array_equal(found, expected)
+    assert (counts.nodata, counts.off_nodata) == (0, 0)
+    write(tmp_path / "a.tif", image)
+    ac.restore(tmp_path / "a.tif", sharpening, out=tmp_path / "b.tif", nodata=nodata)
+    with open_quietly(tmp_path / "b.tif") as dataset:
+        assert dataset.nodata is None
+        assert np.abs(dataset.read(1).astype(int) - expected).max() <= 1
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.int8, np.float32])
+def test_black_data_beside_black_fill_stay_dark(sharpening, dtype):
+    """Of the value of fill, they were moved below the lowest value of the type: to the highest."""
+    lowest = 0 if dtype is np.float32 else np.iinfo(dtype).min
+    image = (lowest + np.random.default_rng(2).integers(55, 66, (150, 150))).astype(dtype)
+    image[:50] = image[90:110, 70:90] = lowest
+    found, counts = restore_array(image, sharpening)
+    assert counts.fill == 50 * 150
+    assert counts.off_nodata > 0
+    assert (found[50:] != lowest).all()
+    assert found[95:105, 75:85].max() < lowest + 12
+
+
+def test_saturated_counts_stay_where_the_scale_is_negative(sharpening, tmp_path):
+    image = np.random.default_rng(2).integers(500, 600, (60, 60)).astype(np.uint16)
+    image[30, 30:33] = 1023
+    write(tmp_path / "a.tif", image)
+    with open_quietly(tmp_path / "a.tif", "r+") as dataset:
+        dataset.scales, dataset.offsets = (-0.1,), (200.0,)
+        dataset.update_tags(SPECIAL_VALUE_SATURATED="1023")
+    done = ac.restore(tmp_path / "a.tif", sharpening, out=tmp_path / "b.tif")
+    assert done.bands[1].saturated == 3
+    with open_quietly(tmp_path / "b.tif") as dataset:
+        assert np.array_equal(dataset.read(1)[30, 30:33], [1023] * 3)
 
 
 def test_an_image_without_data_is_not_written(tmp_path, sharpening):

@@ -7,9 +7,10 @@ anew is therefore not written, and has to be told.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from datetime import datetime, time
 from functools import partial
+from types import MappingProxyType
 from typing import Any, Final
 
 from sqlalchemy import Connection, select
@@ -23,12 +24,14 @@ __all__ = ["Differing", "contradictions", "in_words", "kept_otherwise", "written
 
 Differing = Mapping[str, tuple[Any, Any]]
 """By name: what is kept, and what is stated."""
+Comparison = Callable[[Mapping[str, Any], Mapping[str, Any]], Iterator[tuple[str, tuple[Any, Any]]]]
 
 _STATED: Final = (
     "sensor", "level", "acquired", "view_zenith_deg", "view_azimuth_deg", "sun_elevation_deg",
     "sun_azimuth_deg",
 )  # fmt: skip
 """What callers state of an image; the GSD is that of the measurement."""
+_GSD: Final = ("gsd_row_m", "gsd_col_m")
 _CHUNK: Final = 2000
 """Keys of one question: databases take some ten thousand values."""
 
@@ -56,25 +59,39 @@ def contradictions(database: Database, stated: Mapping[str, ImageEntry]) -> dict
     return found
 
 
-def kept_otherwise(database: Database, stated: Mapping[str, ImageEntry]) -> dict[str, Differing]:
-    """What is stated of images and is not what is kept, by the paths that the archive has.
+def kept_otherwise(
+    database: Database,
+    stated: Mapping[str, ImageEntry],
+    said: Mapping[str, ImageEntry] = MappingProxyType({}),
+) -> dict[str, Differing]:
+    """What is known of images and is not what is kept, by the paths that the archive has.
 
     Parameters
     ----------
     database : Database
     stated : mapping of str to ImageEntry
         By keys; those that are not there are passed over.
+    said : mapping of str to ImageEntry, optional
+        By keys what images say of themselves, which counts where nothing is kept: values that
+        are kept may have been corrected.
 
     Returns
     -------
     dict of str to mapping
-        By image, and by the name of what is stated: what is kept, and what is stated.
+        By image, and by the name of what is known: what is kept, and what is known.
     """
     found: dict[str, Differing] = {}
     for row, differing in _contradicting(database, stated):
-        image = row["path"] or row["content"] or f"image {row['image_id']}"
+        image = _name(row)
         found[image] = {**found.get(image, {}), **differing}
+    for row, differing in _contradicting(database, said, _new):
+        image = _name(row)
+        found[image] = {**differing, **found.get(image, {})}
     return dict(sorted(found.items()))
+
+
+def _name(row: Mapping[str, Any]) -> str:
+    return str(row["path"] or row["content"] or f"image {row['image_id']}")
 
 
 def in_words(differing: Differing) -> str:
@@ -86,7 +103,7 @@ def in_words(differing: Differing) -> str:
 
 
 def _contradicting(
-    database: Database, stated: Mapping[str, ImageEntry]
+    database: Database, stated: Mapping[str, ImageEntry], compare: Comparison | None = None
 ) -> Iterator[tuple[Mapping[str, Any], Differing]]:
     """Rows of measurements and their images, with what is stated otherwise."""
     keys = list(stated)
@@ -96,7 +113,7 @@ def _contradicting(
     for at in range(0, len(keys), _CHUNK):
         some = keys[at : at + _CHUNK]
         for row in database.read(partial(_kept, keys=some)):
-            differing = dict(_differing(row, rows[id(stated[row["key"]])]))
+            differing = dict((compare or _differing)(row, rows[id(stated[row["key"]])]))
             if differing:
                 yield row, differing
 
@@ -108,7 +125,7 @@ def _kept(connection: Connection, keys: list[str]) -> list[Mapping[str, Any]]:
             measurements.c.key,
             measurements.c.id,
             measurements.c.image_id,
-            *(images.c[name] for name in ("name", "path", "content", *_STATED)),
+            *(images.c[name] for name in ("name", "path", "content", *_STATED, *_GSD)),
         )
         .join(images, images.c.id == measurements.c.image_id)
         .where(measurements.c.key.in_(keys))
@@ -123,6 +140,16 @@ def _differing(
     for name in _STATED:
         if stated[name] is not None and not _agree(kept[name], stated[name]):
             yield name, (kept[name], stated[name])
+
+
+def _new(kept: Mapping[str, Any], said: Mapping[str, Any]) -> Iterator[tuple[str, tuple[Any, Any]]]:
+    """What is known where nothing is kept, by name."""
+    for name in _STATED:
+        if kept[name] is None and said[name] is not None:
+            yield name, (None, said[name])
+    row_m, col_m = (said[name] for name in _GSD)
+    if kept[_GSD[0]] is None and row_m is not None:
+        yield "gsd_m", (None, (row_m, col_m))
 
 
 def _agree(kept: Any, stated: Any) -> bool:

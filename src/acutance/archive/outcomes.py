@@ -30,12 +30,15 @@ class Outcome(NamedTuple):
         Of a rejection: in a word or two, else its stage.
     reason : str or None
         The same in full.
+    has_gsd : bool
+        Whether a GSD of its image is kept.
     """
 
     content: str | None
     verdict: str | None
     why: str | None
     reason: str | None
+    has_gsd: bool
 
 
 def kept_outcomes(database: Database, contents: Iterable[str]) -> dict[str, Outcome]:
@@ -61,16 +64,17 @@ def kept_outcomes(database: Database, contents: Iterable[str]) -> dict[str, Outc
         measurements.c.stage,
         measurements.c.rejected_values,
         measurements.c.reason,
+        images.c.gsd_row_m,
     )
     for first in range(0, len(wanted), _MANY):
         some = wanted[first : first + _MANY]
         asked = select(*columns).join(images).where(images.c.content.in_(some))
-        for key, content, verdict, stage, values, reason in database.read(
+        for key, content, verdict, stage, values, reason, gsd_m in database.read(
             partial(_rows, asked=asked)
         ):
             word = None if verdict is None else VERDICTS[verdict]
             why = None if word is not None else str((values or {}).get("why") or stage)
-            found[key] = Outcome(content, word, why, reason)
+            found[key] = Outcome(content, word, why, reason, gsd_m is not None)
     return found
 
 

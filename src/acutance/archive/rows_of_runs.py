@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
 from acutance.archive.connection import Database
@@ -50,21 +51,27 @@ class RowsOfRuns:
         """Write down that a run ended, with its summary."""
         end_run(self._database, run, summary)
 
-    def kept_otherwise(self, stated: Mapping[str, ImageEntry]) -> dict[str, Differing]:
-        """What is stated of images and is not what is kept: `correct_images` changes that.
+    def kept_otherwise(
+        self,
+        stated: Mapping[str, ImageEntry],
+        said: Mapping[str, ImageEntry] = MappingProxyType({}),
+    ) -> dict[str, Differing]:
+        """What is known of images and is not what is kept: `correct_images` changes that.
 
         Parameters
         ----------
         stated : mapping of str to ImageEntry
             By the keys of rows; those that are not there are passed over.
+        said : mapping of str to ImageEntry, optional
+            By the keys of rows what images say of themselves; it counts where nothing is kept.
 
         Returns
         -------
         dict of str to mapping
-            By the path of the image in the archive, and by the name of what is stated ("sensor"):
-            what is kept, and what is stated.
+            By the path of the image in the archive, and by the name of what is known ("sensor"):
+            what is kept, and what is known.
         """
-        return kept_otherwise(self._database, stated)
+        return kept_otherwise(self._database, stated, said)
 
     def remove_rejections(self, keys: Iterable[str]) -> int:
         """Remove rejections that hold no longer, and images of which nothing else is kept.

@@ -169,6 +169,8 @@ def _in_window(series: Series, requirement: Requirement) -> Series:
 
 def _untold(requirement: Requirement, series: Series, images: int) -> Answer:
     trusted = _trusted_words(requirement)
+    if series.size and not series.known().size:
+        trusted = f" with a value of {requirement.metric}"
     reason = (
         f"there is no image{trusted}" if images == 0 else
         f"there is one image{trusted}, which does not show how much images scatter"

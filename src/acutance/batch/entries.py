@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from datetime import datetime
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,7 +21,7 @@ from acutance.raster.surveyed_targets import SurveyedTarget
 if TYPE_CHECKING:
     from acutance.batch.measure_image import BatchTask
 
-__all__ = ["image_entry", "stated_entry", "target_entry"]
+__all__ = ["entry_of_facts", "image_entry", "image_facts", "stated_entry", "target_entry"]
 
 _FIELDS = (
     "sensor", "level", "acquired", "gsd_m",
@@ -53,6 +55,35 @@ def image_entry(task: BatchTask, statement: ImageStatement) -> ImageEntry:
         if is_day(when):
             sources["acquired"] += ": a day without a time, kept as its beginning"
     return ImageEntry(path=task.path, content=task.content, sources=sources, **values)
+
+
+def image_facts(statement: ImageStatement, has_gsd: bool) -> dict[str, Any]:
+    """What an image says of itself, for JSON: the GSD where it has no other to be measured with.
+
+    Parameters
+    ----------
+    statement : ImageStatement
+    has_gsd : bool
+        Whether the pixels have a GSD without its documents.
+    """
+    facts: dict[str, Any] = {}
+    for name in _FIELDS:
+        found = getattr(statement, name)
+        if found is not None and not (name == "gsd_m" and has_gsd):
+            facts[name] = found.value
+    if "acquired" in facts:
+        facts["acquired"] = as_utc(facts["acquired"], "acquired").isoformat()
+    return facts
+
+
+def entry_of_facts(facts: Mapping[str, Any]) -> ImageEntry:
+    """What `image_facts` gave, and a file may have kept since."""
+    values = dict(facts)
+    if "acquired" in values:
+        values["acquired"] = datetime.fromisoformat(values["acquired"])
+    if "gsd_m" in values:
+        values["gsd_m"] = tuple(values["gsd_m"])
+    return ImageEntry(**values)
 
 
 def stated_entry(stated: StatedOfImages) -> ImageEntry | None:

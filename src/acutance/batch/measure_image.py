@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import date
 from typing import Any
 
 from acutance.archive.entry import Entry, ImageEntry
-from acutance.batch.entries import image_entry, target_entry
+from acutance.batch.entries import image_entry, image_facts, target_entry
 from acutance.batch.place_target import NotHereError, PlacedTarget, place_target
 from acutance.batch.plan import StatedOfImages
 from acutance.batch.plan_options import ChosenOptions
@@ -71,6 +71,9 @@ class BatchTask:
         Digests of how it is read.
     done : frozenset of str
         Keys of its rows that the archive has.
+    without_gsd : frozenset of str
+        Keys among them of rejections from a time when no GSD of the image was known: where its
+        documents state one now, they are done again.
     """
 
     path: str
@@ -78,6 +81,7 @@ class BatchTask:
     stated: StatedOfImages
     reading: Reading
     done: frozenset[str]
+    without_gsd: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -97,6 +101,8 @@ class MeasuredImage:
         Whether its RPC locate it, and need the height of the ground.
     image : ImageEntry or None
         All that is known of it; None where it cannot be opened.
+    facts : mapping
+        What it says of itself.
     """
 
     entries: list[Entry]
@@ -105,6 +111,7 @@ class MeasuredImage:
     measuring_s: float
     by_rpc: bool = False
     image: ImageEntry | None = None
+    facts: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -118,6 +125,7 @@ class _Opened:
     acquired: date | None
     height_m: float | None
     by_rpc: bool
+    facts: Mapping[str, Any]
 
 
 @one_thread
@@ -137,7 +145,9 @@ def measure_image(work: BatchWork, task: BatchTask) -> MeasuredImage:
     day = None if opened.acquired is None else opened.acquired.isoformat()
     measuring_s = sum(seconds for _, seconds in found)
     entries = [entry for entry, _ in found]
-    return MeasuredImage(entries, opened.bands, day, measuring_s, opened.by_rpc, opened.entry)
+    return MeasuredImage(
+        entries, opened.bands, day, measuring_s, opened.by_rpc, opened.entry, opened.facts
+    )
 
 
 def _opened(task: BatchTask) -> _Opened:
@@ -167,7 +177,13 @@ def _opened(task: BatchTask) -> _Opened:
     acquired = None if entry.acquired is None else entry.acquired.date()
     model = georeference_of(images[0])
     by_rpc = isinstance(model, SensorModel) and model.needs_height
-    return _Opened(images, bands, statement, entry, acquired, stated.height_m, by_rpc)
+    facts = image_facts(statement, _has_gsd(images[0]))
+    return _Opened(images, bands, statement, entry, acquired, stated.height_m, by_rpc, facts)
+
+
+def _has_gsd(image: Image) -> bool:
+    """Whether the pixels have a GSD without what documents state."""
+    return image.own_gsd is not None or image.geolocation is not None
 
 
 def _unreadable(task: BatchTask, error: AcutanceError) -> Entry:
@@ -188,7 +204,8 @@ def _rows(work: BatchWork, task: BatchTask, opened: _Opened) -> Iterator[tuple[E
                 continue
             reading = task.reading.of(target, opened.by_rpc)
             key = row_key(str(task.content), reading, digest, band.number, day_of(target, day))
-            if key in task.done:
+            has_gsd_now = "gsd_m" in opened.facts and key in task.without_gsd
+            if key in task.done and not has_gsd_now:
                 continue
             if is_ending():
                 # What was measured is kept, the next batch does the rest.
@@ -284,7 +301,7 @@ def _placed(target: SurveyedTarget, image: Image, opened: _Opened) -> PlacedTarg
         _require_credible_gsd(image)
     stated = opened.entry.gsd_m
     gsd = None
-    if image.own_gsd is None and image.geolocation is None and stated is not None:
+    if not _has_gsd(image) and stated is not None:
         gsd = Gsd(*stated)
     return place_target(target, image, georeference, gsd)
 

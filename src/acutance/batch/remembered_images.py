@@ -11,8 +11,9 @@ import os
 import sqlite3
 from collections.abc import Iterable, Mapping
 from contextlib import closing
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
+from typing import Any
 
 from acutance.batch.image_list import ImageFile
 
@@ -41,6 +42,8 @@ class KnownImage:
         Whether its RPC locate it, and need the height of the ground.
     stated : str
         Digest of the statement of the plan by which bands and day were found out.
+    facts : mapping
+        What the image says of itself, with the documents beside it.
     """
 
     content: str
@@ -48,6 +51,7 @@ class KnownImage:
     day: str | None = None
     by_rpc: bool = False
     stated: str = ""
+    facts: Mapping[str, Any] = field(default_factory=dict)
 
     def under(self, stated: str) -> KnownImage:
         """What is known of it under a statement: its content alone, if that is another."""
@@ -115,7 +119,10 @@ def _known_image(text: str) -> KnownImage | None:
         found = json.loads(text)
         bands = found["bands"]
         named = None if bands is None else tuple((int(one), name) for one, name in bands)
-        by_rpc, stated = bool(found["by_rpc"]), str(found["stated"])
-        return KnownImage(str(found["content"]), named, found["day"], by_rpc, stated)
+        by_rpc, stated, facts = bool(found["by_rpc"]), str(found["stated"]), found.get("facts")
+        if facts is None:
+            # Earlier versions did not write them down: the image is opened once more.
+            return KnownImage(str(found["content"]))
+        return KnownImage(str(found["content"]), named, found["day"], by_rpc, stated, facts)
     except (ValueError, KeyError, TypeError):
         return None

@@ -47,7 +47,8 @@ class BatchSummary(ShortRepr):
         Images with the content of another, which stands for them; by path that of the other.
     kept_otherwise : mapping of str to mapping
         By image, and by the name of what is stated of it and is not what the archive has
-        ("sensor"): what is kept, and what is stated. Rows that are there stay as they are.
+        ("sensor"): what is kept, and what is stated; what the image says itself by now, by a
+        document beside it, where nothing is kept. Rows that are there stay as they are.
     earlier_contents : mapping of str to sequence of str
         By path the contents (SHA-256) that a changed file had before and of which the archive
         still has rows: they count beside the new ones until they are removed.
@@ -154,6 +155,8 @@ class Tally:
         self.bands: set[Band] = set()
         self.stated: dict[str, ImageEntry] = {}
         """By keys of rows what is stated of their images."""
+        self.said: dict[str, ImageEntry] = {}
+        """By keys of rows what their images say of themselves."""
         self.outlived: set[str] = set()
         """Keys of rejections that hold no longer: of files that were missing, dates not known."""
 
@@ -191,6 +194,10 @@ class Tally:
         """Note what is stated of the image of some rows; None if that is nothing."""
         if image is not None:
             self.stated.update(dict.fromkeys(keys, image))
+
+    def add_said(self, keys: Iterable[str], image: ImageEntry) -> None:
+        """Note what the image of some rows says of itself."""
+        self.said.update(dict.fromkeys(keys, image))
 
     def _count(self, verdict: str | None, why: str | None) -> None:
         if verdict is not None:

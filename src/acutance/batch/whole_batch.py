@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import os
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -12,7 +13,7 @@ from typing import Any
 from acutance.archive import Archive, Entry
 from acutance.archive.connection import is_there
 from acutance.archive.outcomes import Outcome
-from acutance.batch.entries import stated_entry
+from acutance.batch.entries import entry_of_facts, stated_entry
 from acutance.batch.image_list import (
     ImageFile,
     content_of,
@@ -125,7 +126,7 @@ def run_batch(
         todo = _tasks(files, known, wanted, work, there, tally)
         run = _run(todo, wanted, work, place, there, tally, progress, kept) if todo else None
         place.remove_rejections(tally.outlived)
-        otherwise = place.kept_otherwise(tally.stated)
+        otherwise = place.kept_otherwise(tally.stated, tally.said)
         earlier = place.earlier_contents({path: one.content for path, one in known.items()})
     bands = [one for some in (work.bands, *(t.bands for t in work.targets)) for one in some or ()]
     elapsed_s = time.monotonic() - begin
@@ -157,7 +158,7 @@ def _wanted(
         "images": None if images is None else _texts(images),
         "targets": targets if isinstance(targets, Mapping | None) else os.fspath(targets),
         "archive": None if archive is None else os.fspath(archive),
-        "bands": None if bands is None else tuple(bands),
+        "bands": None if bands is None else _bands(bands),
         "workers": workers,
         "dask": scheduler,
     }
@@ -175,11 +176,18 @@ def _texts(images: str | Sequence[str]) -> tuple[str, ...]:
     return tuple(os.fspath(one) for one in images)
 
 
+def _bands(bands: Sequence[str | int]) -> tuple[str | int, ...]:
+    """Names and numbers, whatever kind of integers they were given as."""
+    try:
+        return tuple(one if isinstance(one, str) else operator.index(one) for one in bands)
+    except TypeError:
+        raise OptionError(f"bands are {bands!r:.80}: give a list of names or numbers") from None
+
+
 def _work(plan: BatchPlan) -> BatchWork:
     """Targets with their options."""
     if isinstance(plan.targets, Mapping):
-        crs = plan.targets.get("crs")
-        targets = targets_of(plan.targets, "targets", crs if isinstance(crs, str) else None)
+        targets = targets_of(plan.targets, "targets")
     else:
         targets = read_targets(plan.targets)
     chosen = choose_options(targets, plan.options)
@@ -237,13 +245,22 @@ def _tasks(
         if unreadable_key(content, file.path) in done:
             tally.add_earlier(file.path, [there[unreadable_key(content, file.path)]])
             continue
-        if image is not None and wanted is not None and wanted <= done:
+        without_gsd = frozenset(key for key in done if _lacked_gsd(there[key]))
+        again = without_gsd if image is not None and "gsd_m" in image.facts else frozenset()
+        if image is not None and wanted is not None and wanted <= done - again:
             tally.add_earlier(file.path, [there[key] for key in wanted])
             tally.add_stated(wanted, stated_entry(stated))
+            tally.add_said(wanted, entry_of_facts(image.facts))
             tally.outlived |= _outlived_keys(image, reading, work)
             continue
-        found.append((file, BatchTask(file.path, content, stated, reading, frozenset(done))))
+        task = BatchTask(file.path, content, stated, reading, frozenset(done), without_gsd)
+        found.append((file, task))
     return found
+
+
+def _lacked_gsd(row: Outcome) -> bool:
+    """Whether a row is a rejection from a time when no GSD of its image was known."""
+    return row.verdict is None and not row.has_gsd
 
 
 def _statement(stated: StatedOfImages) -> str:
@@ -291,19 +308,24 @@ def _run(
         file, task = todo[place]
         if place in finished:
             return
+        again = {entry.key for entry in found.entries if entry.key in task.without_gsd}
+        archive.remove_rejections(again)
         new = archive.add_entries(found.entries, run=number)
         finished.add(place)
         if kept is not None:
             kept(found.entries)
         if task.content is not None and found.bands is not None:
             said = _statement(task.stated)
-            image = KnownImage(task.content, found.bands, found.day, found.by_rpc, said)
+            image = KnownImage(
+                task.content, found.bands, found.day, found.by_rpc, said, found.facts
+            )
             memory.remember({file: image})
             wanted = _wanted_keys(image, task.reading, work) or set()
-            tally.add_earlier(file.path, [there[key] for key in wanted & task.done])
+            tally.add_earlier(file.path, [there[key] for key in wanted & task.done - again])
             # What stated documents say is known once they were read.
             by_documents = task.stated.metadata is not None
             tally.add_stated(wanted, found.image if by_documents else stated_entry(task.stated))
+            tally.add_said(wanted, entry_of_facts(found.facts))
             tally.outlived |= _outlived_keys(image, task.reading, work)
         tally.add_image(task.path, found, new)
         if progress is not None:

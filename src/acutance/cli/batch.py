@@ -252,14 +252,21 @@ def _kept_otherwise(found: BatchSummary) -> list[str]:
     several = found.kept_otherwise.values()
     image = next(iter(found.kept_otherwise)) if len(several) == 1 else "NAME"
     words = ["acutance", "archive", "correct", found.archive, "--image", image]
-    for name in dict.fromkeys(name for one in several for name in one):
+    every = dict.fromkeys(name for one in several for name in one)
+    lines = [f"not changed: {path} is kept with {in_words(one)}"
+             for path, one in found.kept_otherwise.items()]  # fmt: skip
+    # A GSD that is corrected makes no metres of what was measured without one.
+    names = [name for name in every if name != "gsd_m"]
+    for name in names:
         stated = {written(one[name][1]) for one in several if name in one}
         words += [f"--{name.replace('_', '-')}", stated.pop() if len(stated) == 1 else "VALUE"]
-    return [
-        *_named(f"not changed: {path} is kept with {in_words(one)}"
-                for path, one in found.kept_otherwise.items()),
-        f"rows that are there stay as they are; where they are wrong: {shlex.join(words)}",
-    ]  # fmt: skip
+    advice = []
+    if names:
+        advice.append(f"where they are wrong: {shlex.join(words)}")
+    if "gsd_m" in every:
+        remove = shlex.join(["acutance", "archive", "remove", found.archive, "--image", image])
+        advice.append(f"to have them measured in metres: {remove}, and the same batch again")
+    return [*_named(lines), f"rows that are there stay as they are; {'; '.join(advice)}"]
 
 
 def _named(lines: Iterable[str]) -> list[str]:

@@ -33,6 +33,7 @@ from acutance.raster.region import Box
 __all__ = [
     "CACHE_BYTES",
     "DatasetPixels",
+    "declared_nodata",
     "open_dataset",
     "open_quietly",
     "opened_dataset",
@@ -64,6 +65,8 @@ class DatasetPixels:
         The band that is 0 where a pixel is transparent.
     scale, offset : float
         What `read` gives is stored value * scale + offset.
+    largest_count : float or None
+        The largest stored value, which saturated pixels have; ``None`` for floats.
     """
 
     path: str
@@ -73,6 +76,7 @@ class DatasetPixels:
     alpha_band: int | None
     scale: float
     offset: float
+    largest_count: float | None
 
     def read(self, box: Box) -> Floats:
         window = Window(box.col, box.row, box.width, box.height)
@@ -106,7 +110,7 @@ def open_dataset(path: str, band: int, gsd: Gsd | None, nodata: float | None) ->
                 "leave nothing to measure: correct the file's metadata"
             )
         flags = dataset.mask_flag_enums[band - 1]
-        level = _saturation_level(dataset, band)
+        level = _largest_count(dataset, band)
         declared = _declared_gsd(dataset)
         return Image(
             path=path,
@@ -117,13 +121,15 @@ def open_dataset(path: str, band: int, gsd: Gsd | None, nodata: float | None) ->
             source=DatasetPixels(
                 path=path,
                 band=band,
-                nodata=_nodata(dataset, band) if nodata is None else nodata,
+                nodata=declared_nodata(dataset, band) if nodata is None else nodata,
                 has_mask=MaskFlags.per_dataset in flags and MaskFlags.alpha not in flags,
                 alpha_band=_alpha_band(dataset, band),
                 scale=scale,
                 offset=offset,
+                largest_count=level,
             ),
-            saturation_level=None if level is None else level * scale + offset,
+            # A negative scale makes the largest count the smallest value: no value is a limit.
+            saturation_level=None if level is None or scale < 0 else level * scale + offset,
             geolocation=_geolocation(dataset),
             own_gsd=declared if gsd is None else gsd,
             declared_gsd=declared,
@@ -233,13 +239,13 @@ def _alpha_band(dataset: Any, band: int) -> int | None:
     return None
 
 
-def _nodata(dataset: Any, band: int) -> float | None:
-    """The nodata value of the band, or of the product (Sentinel-2)."""
+def declared_nodata(dataset: Any, band: int) -> float | None:
+    """The nodata value of a band, from 1, of an open file, or of the product (Sentinel-2)."""
     value: float | None = dataset.nodatavals[band - 1]
     return _whole_number(dataset.tags().get("SPECIAL_VALUE_NODATA")) if value is None else value
 
 
-def _saturation_level(dataset: Any, band: int) -> float | None:
+def _largest_count(dataset: Any, band: int) -> float | None:
     """The largest stored count: declared by the file, or that of its integer type."""
     dtype = np.dtype(dataset.dtypes[band - 1])
     if dtype.kind not in "iu":

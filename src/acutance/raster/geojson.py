@@ -6,7 +6,7 @@ Coordinates stay (x, y) as in the file; `acutance.raster.coordinates` relates th
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -46,7 +46,7 @@ def load_geojson(name: str) -> dict[str, Any]:
     return document
 
 
-def declared_crs(document: dict[str, Any], name: str) -> str | None:
+def declared_crs(document: Mapping[str, Any], name: str) -> str | None:
     """The CRS in the "crs" member: its name, or the member itself if it is a text.
 
     Returns
@@ -62,8 +62,8 @@ def declared_crs(document: dict[str, Any], name: str) -> str | None:
     member = document.get("crs")
     if member is None or isinstance(member, str):
         return member
-    properties = member.get("properties") if isinstance(member, dict) else None
-    crs = properties.get("name") if isinstance(properties, dict) else None
+    properties = member.get("properties") if isinstance(member, Mapping) else None
+    crs = properties.get("name") if isinstance(properties, Mapping) else None
     if not isinstance(crs, str):
         raise RegionError(
             f'{name} has a "crs" without a name: write "crs": "EPSG:32631", or "crs": "pixel" '

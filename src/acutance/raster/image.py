@@ -62,7 +62,8 @@ class Image(ShortRepr):
         What the pixels are read from.
     saturation_level : float or None
         The largest value the detector's counts can take, in the units `read` gives: that of the
-        integer type, or of the bits or the saturated value the file declares. ``None`` for floats.
+        integer type, or of the bits or the saturated value the file declares. ``None`` for floats,
+        and where a negative scale of the file makes the largest count the smallest value.
     geolocation : Geolocation or None
         ``None`` for an image with no CRS.
     own_gsd : Gsd or None

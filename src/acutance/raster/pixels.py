@@ -25,6 +25,7 @@ __all__ = [
     "largest_count",
     "require_image_array",
     "require_nodata",
+    "storable_nodata",
     "type_name",
     "usable_values",
 ]
@@ -217,6 +218,19 @@ def equals_nodata(raw: NDArray[Any], nodata: float | None) -> NDArray[np.bool_]:
         return np.asarray(raw == nodata)
     with np.errstate(over="ignore"):
         return np.asarray(raw == raw.dtype.type(nodata))
+
+
+def storable_nodata(dtype: np.dtype[Any], nodata: float | None) -> float | None:
+    """The nodata value as pixels of a type have it; ``None`` if none of them can."""
+    if nodata is None:
+        return None
+    if dtype.kind == "f":
+        with np.errstate(over="ignore"):
+            stored = float(dtype.type(nodata))
+        return None if np.isinf(stored) and np.isfinite(nodata) else stored
+    bounds = np.iinfo(dtype)
+    is_whole = np.isfinite(nodata) and float(nodata).is_integer()
+    return float(nodata) if is_whole and bounds.min <= nodata <= bounds.max else None
 
 
 def is_nan(nodata: float | None) -> bool:

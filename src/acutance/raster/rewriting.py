@@ -25,6 +25,7 @@ from acutance.raster.dataset import (
 )
 from acutance.raster.pixels import equals_nodata
 from acutance.raster.region import Box
+from acutance.raster.unified_nodata import UnifiedNodata, unified_nodata
 from acutance.raster.writing import written_in_our_words
 
 __all__ = ["StoredWindow", "rewrite_image", "stored_tags"]
@@ -76,7 +77,7 @@ def rewrite_image(
     nodata: float | None = None,
     tags: dict[str, str] | None = None,
     progress: Callable[[int, int], None] | None = None,
-) -> None:
+) -> tuple[str, ...]:
     """Write a cloud optimized GeoTIFF with other pixels, whole or not at all.
 
     Type, georeference, RPC, ground control points, metadata, scales, colour interpretation, nodata
@@ -90,7 +91,8 @@ def rewrite_image(
     out : str or path
         An existing file is replaced when the new one is complete.
     change : function of a StoredWindow
-        Gives the pixels of the window, without its margin, in the type they are stored in.
+        Gives the pixels of the window, without its margin, in the type they are stored in; those
+        with data do not get the value of nodata.
     bands : sequence of int
         Those that are changed, from 1.
     margin_px : int
@@ -102,6 +104,11 @@ def rewrite_image(
     progress : function of (done, total), optional
         Called with numbers of pixels.
 
+    Returns
+    -------
+    tuple of str
+        What could not be kept, in sentences.
+
     Raises
     ------
     ImageError
@@ -112,16 +119,18 @@ def rewrite_image(
         stack.enter_context(rasterio.Env(GDAL_CACHEMAX=CACHE_BYTES, GDAL_TIFF_INTERNAL_MASK=True))
         with read_in_our_words(path):
             source = stack.enter_context(open_quietly(path))
+            values = unified_nodata(source, nodata)
         with written_in_our_words(target, _ADVICE):
             folder = stack.enter_context(TemporaryDirectory(prefix=".acutance-", dir=target.parent))
             plain = os.path.join(folder, "plain.tif")
-            made = open_quietly(plain, "w", **_profile(source, nodata))
+            made = open_quietly(plain, "w", **_profile(source, values.common))
             stack.callback(made.close)
             _copy_descriptions(source, made, tags or {})
         boxes = list(_boxes((source.height, source.width)))
         done, total = 0, source.height * source.width
+        moved = dict.fromkeys(range(1, source.count + 1), 0)
         for box in boxes:
-            _rewrite_box(source, made, box, change, bands, margin_px, nodata, (path, target))
+            _rewrite_box(source, made, box, change, bands, margin_px, values, moved, (path, target))
             done += box.height * box.width
             if progress is not None:
                 progress(done, total)
@@ -133,6 +142,7 @@ def rewrite_image(
             if description.exists():
                 os.replace(description, target.with_suffix(".IMD"))
             os.replace(finished, target)
+    return values.notes(moved)
 
 
 def _rewrite_box(
@@ -142,20 +152,23 @@ def _rewrite_box(
     change: Callable[[StoredWindow], NDArray[Any]],
     bands: Sequence[int],
     margin_px: int,
-    nodata: float | None,
+    values: UnifiedNodata,
+    moved: dict[int, int],
     names: tuple[str, Path],
 ) -> None:
-    """One window of all bands: changed, or copied."""
+    """One window of all bands: changed, or copied; pixels moved off nodata are counted."""
     path, target = names
     own = Window(box.col, box.row, box.width, box.height)
     for band in range(1, source.count + 1):
         if band in bands:
             with read_in_our_words(path):
-                window = _stored_window(source, band, box, margin_px, nodata)
+                window = _stored_window(source, band, box, margin_px, values)
             pixels = change(window)
         else:
             with read_in_our_words(path):
                 pixels = source.read(band, window=own)
+        pixels, count = values.unified(pixels, band)
+        moved[band] += count
         with written_in_our_words(target, _ADVICE):
             made.write(pixels, band, window=own)
     if _has_mask(source):
@@ -166,14 +179,14 @@ def _rewrite_box(
 
 
 def _stored_window(
-    source: Any, band: int, box: Box, margin_px: int, nodata: float | None
+    source: Any, band: int, box: Box, margin_px: int, values: UnifiedNodata
 ) -> StoredWindow:
     whole, grown = Box.whole((source.height, source.width)), box.grown(margin_px)
     inside = grown.intersection(whole)
     assert inside is not None
     window = Window(inside.col, inside.row, inside.width, inside.height)
     raw = source.read(band, window=window)
-    masked = equals_nodata(raw, source.nodatavals[band - 1] if nodata is None else nodata)
+    masked = equals_nodata(raw, values.own[band - 1])
     if _has_mask(source):
         masked |= source.read_masks(band, window=window) == 0
     for number, meaning in enumerate(source.colorinterp, start=1):
@@ -222,7 +235,7 @@ def _profile(source: Any, nodata: float | None) -> dict[str, Any]:
         "height": source.height,
         "width": source.width,
         "dtype": types.pop(),
-        "nodata": _declared(source, nodata),
+        "nodata": nodata,
         "crs": None if gcps else source.crs,
         "transform": None if gcps or source.transform.is_identity else source.transform,
         "tiled": True,
@@ -232,20 +245,6 @@ def _profile(source: Any, nodata: float | None) -> dict[str, Any]:
         **({"photometric": "rgb"} if _is_rgb(source) else {}),
         **({"nbits": _bits(source)} if _bits(source) else {}),
     }
-
-
-def _declared(source: Any, nodata: float | None) -> float | None:
-    """The value of nodata for the new file; none where its type does not have the one given.
-
-    NaN says that every value is data, and whole numbers without a sign have no -9999.
-    """
-    if nodata is None:
-        return None if source.nodata is None else float(source.nodata)
-    dtype = np.dtype(source.dtypes[0])
-    if dtype.kind not in "iu":
-        return nodata
-    bounds = np.iinfo(dtype)
-    return nodata if bounds.min <= nodata <= bounds.max else None
 
 
 def _is_rgb(source: Any) -> bool:

@@ -168,10 +168,9 @@ def read_targets(path: str) -> tuple[SurveyedTarget, ...]:
     """
     try:
         document = load_geojson(path)
-        crs = declared_crs(document, path)
     except RegionError as error:
         raise OptionError(str(error)) from error
-    return targets_of(document, path, crs)
+    return targets_of(document, path)
 
 
 def targets_of(
@@ -186,7 +185,7 @@ def targets_of(
     name : str
         Of the file, for messages.
     crs : str, optional
-        Of its coordinates; longitude and latitude without one (RFC 7946).
+        Of its coordinates, if not the one it declares; longitude and latitude without either.
 
     Raises
     ------
@@ -199,6 +198,10 @@ def targets_of(
         raise OptionError(f"{name} holds a {kind!r}: write the targets as a FeatureCollection")
     if not features:
         raise OptionError(f"{name} holds no features: write one for every target")
+    try:
+        crs = crs or declared_crs(document, name)
+    except RegionError as error:
+        raise OptionError(str(error)) from error
     found: list[SurveyedTarget] = []
     faults = _faults_of_crs(crs)
     for number, feature in enumerate(features, start=1):
@@ -332,7 +335,8 @@ def _checked(
     )
 
 
-Shape = tuple[str | None, tuple[tuple[float, float], ...], list[str]]
+Points = tuple[tuple[float, float], ...]
+Shape = tuple[str | None, Points, list[str]]
 
 
 def _geometry(geometry: Any, kind: str | None, crs: str) -> Shape:
@@ -361,9 +365,7 @@ def _geometry(geometry: Any, kind: str | None, crs: str) -> Shape:
     return shape, *_usable(shape, points, crs)
 
 
-def _usable(
-    shape: str, points: tuple[tuple[float, float], ...], crs: str
-) -> tuple[tuple[tuple[float, float], ...], list[str]]:
+def _usable(shape: str, points: Points, crs: str) -> tuple[Points, list[str]]:
     if shape == "Polygon" and len(points) > 1 and points[0] == points[-1]:
         points = points[:-1]
     least = {"LineString": 2, "Polygon": 3, "Point": 1, "MultiPoint": 1}[shape]
@@ -383,9 +385,9 @@ def _usable(
 
 def _of_catalogue(
     given: _Properties, size_m: float | None
-) -> tuple[str | None, tuple[tuple[float, float], ...], str, float | None, list[str]]:
+) -> tuple[str | None, Points, str, float | None, list[str]]:
     """The place of a site that stands in the catalogue."""
-    nowhere: tuple[str | None, tuple[tuple[float, float], ...], str] = (None, (), LONLAT_CRS)
+    nowhere: tuple[str | None, Points, str] = (None, (), LONLAT_CRS)
     if given.site is None:
         return *nowhere, size_m, ["it has no geometry, and names no site of the catalogue"]
     try:

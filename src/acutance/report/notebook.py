@@ -59,17 +59,17 @@ def _several_html(summary: str, tables: Sequence[Table]) -> str:
 def _one_html(result: Measurement | Record) -> str:
     if isinstance(result, Record):
         numbers = headline_table(recorded_numbers(result))
-        plate = recorded_mtf(result)
+        plates = recorded_mtf(result)
     else:
         numbers = headline_table(numbers_of(result), result)
-        plate = _first_panels(result)
+        plates = (_first_panels(result),)
     main = Section(
         title_of(result),
         paragraphs=(describe_image(result),),
         verdicts=(verdict_of(result),),
         tables=(numbers,),
     )
-    return render_fragment([main, Section("", plates=(plate,))])
+    return render_fragment([main, Section("", plates=plates)])
 
 
 def _first_panels(measurement: Measurement) -> Plate:

@@ -44,7 +44,7 @@ def recorded_sections(
             "Result",
             verdicts=verdicts,
             tables=(headline_table(recorded_numbers(record)),),
-            plates=(recorded_mtf(record),),
+            plates=recorded_mtf(record),
             side_by_side=True,
         ),
         *map(Section.of_table, numbers),
@@ -52,12 +52,15 @@ def recorded_sections(
     )
 
 
-def recorded_mtf(record: Record) -> Plate:
-    """The MTF of every direction as the document holds it."""
+def recorded_mtf(record: Record) -> tuple[Plate, ...]:
+    """The MTF of every direction as the document holds it; nothing where it holds numbers alone."""
+    directions = {name: one for name, one in record.directions.items() if one.has_curve("mtf")}
+    if not directions:
+        return ()
     with styled():
         figure = new_page(5.0, PANEL_HEIGHT_IN)
         axes = figure.subplots()
-        curves = {name: one.curve("mtf") for name, one in record.directions.items()}
+        curves = {name: one.curve("mtf") for name, one in directions.items()}
         tops = (band_edges(value, std)[1].max() for _, value, std in curves.values())
         mark_frequencies(axes, None, float(max(tops)))
         for name, (freq, value, std) in curves.items():
@@ -65,4 +68,4 @@ def recorded_mtf(record: Record) -> Plate:
             axes.fill_between(freq, low, high, color=COLORS[name], alpha=0.25, linewidth=0)
             axes.plot(freq, value, color=COLORS[name], label=name)
         axes.legend(loc="upper right")
-    return Plate.of_figure(figure, "MTF", "")
+    return (Plate.of_figure(figure, "MTF", ""),)

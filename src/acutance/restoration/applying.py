@@ -7,6 +7,7 @@ import math
 import os
 import warnings
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, overload
@@ -17,7 +18,12 @@ from numpy.typing import ArrayLike, NDArray
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ImageError, NoDataError, OptionError
 from acutance.raster import Box, Image, SwathFill, find_swath_fill, open_image
-from acutance.raster.pixels import equals_nodata, largest_count, require_image_array
+from acutance.raster.pixels import (
+    equals_nodata,
+    largest_count,
+    require_image_array,
+    storable_nodata,
+)
 from acutance.restoration.filter_match import (
     chosen_bands,
     match_notes,
@@ -182,7 +188,10 @@ def restore_array(
     view = Image.from_array(array, nodata=nodata)
     fill = find_swath_fill(view)
     kind = _stored_type(
-        raw.dtype, _left_alone(view, nodata, fill), saturation, largest_count(raw.dtype)
+        raw.dtype,
+        _left_alone(view, storable_nodata(raw.dtype, nodata), fill),
+        saturation,
+        largest_count(raw.dtype),
     )
     counts = PixelCounts()
     if fill is not None:
@@ -228,15 +237,15 @@ def _restore_file(
     _require_fitting(first.shape, filter)
     earlier = stored_tags(path)
     if not accept_mismatch:
-        require_match(first, filter, chosen, bands == "all")
+        require_match(first, filter, chosen, isinstance(bands, str))
         require_unrestored(path, earlier)
     fills = {band: find_swath_fill(one) for band, one in images.items()}
     kinds = {
         band: _stored_type(
             np.dtype(one.dtype),
-            _left_alone(one, getattr(one.source, "nodata", None), fills[band]),
+            _left_alone(one, _stored_nodata(one), fills[band]),
             saturation,
-            _count(one),
+            getattr(one.source, "largest_count", None),
         )
         for band, one in images.items()
     }
@@ -258,11 +267,11 @@ def _restore_file(
         return pixels
 
     tags = restored_tags(_tag(filter, chosen), earlier)
-    rewrite_image(
+    notes = rewrite_image(
         path, out, change, bands=chosen, margin_px=reach, nodata=nodata,
         tags=tags, progress=progress,
     )  # fmt: skip
-    return RestoredImage(out, counts, match_notes(first, filter, chosen))
+    return RestoredImage(out, counts, match_notes(first, filter, chosen) + notes)
 
 
 def _restore_npy(
@@ -285,8 +294,11 @@ def _restore_npy(
             np.save(file, pixels)
         os.replace(part, os.path.realpath(out))
     except OSError as error:
-        part.unlink(missing_ok=True)
         raise ImageError(f"{out} cannot be written ({error.strerror or error})") from error
+    finally:
+        # Also where the run is interrupted: a part of an image is of no use.
+        with suppress(OSError):
+            part.unlink()
     return RestoredImage(out, {1: counts}, match_notes(image, filter, [1]))
 
 
@@ -313,6 +325,11 @@ def _stored_type(
     return StoredType(dtype, nodata, largest)
 
 
+def _stored_nodata(image: Image) -> float | None:
+    """The nodata value of an image of a file, as its pixels have it."""
+    return storable_nodata(np.dtype(image.dtype), getattr(image.source, "nodata", None))
+
+
 def _left_alone(image: Image, nodata: float | None, fill: SwathFill | None) -> float | None:
     """The stored value that no pixel with data becomes: that of nodata, else that of fill."""
     if nodata is not None or fill is None:
@@ -326,12 +343,6 @@ def _stored(image: Image, value: float) -> float:
     """How a value, in the units an image is read in, is stored."""
     source = image.source
     return float((value - getattr(source, "offset", 0.0)) / getattr(source, "scale", 1.0))
-
-
-def _count(image: Image) -> float | None:
-    """The largest stored count, which an image has in the units it is read in."""
-    level = image.saturation_level
-    return None if level is None else _stored(image, level)
 
 
 def _require_fitting(shape: tuple[int, ...], filter: RestorationFilter) -> None:

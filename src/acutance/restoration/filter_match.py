@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Mapping, Sequence
-from typing import Literal
+from typing import Any, Literal
+
+import numpy as np
 
 from acutance.errors import OptionError
 from acutance.raster import Image
@@ -31,15 +34,13 @@ def chosen_bands(
     Raises
     ------
     OptionError
-        If none was named, and none follows from the filter.
+        If none was named, and none follows from the filter, or one is no number.
     """
-    if bands == "all":
+    if isinstance(bands, str) and bands == "all":
         alpha = getattr(first.source, "alpha_band", None)
         return [one for one in range(1, first.band_count + 1) if one != alpha]
-    if isinstance(bands, str):
-        raise OptionError(f"bands is {bands!r}: give numbers from 1, or 'all'")
     if bands is not None:
-        return [bands] if isinstance(bands, int) else list(bands)
+        return _numbers(bands)
     if first.band_count == 1:
         return [1]
     if filter.band is None:
@@ -48,6 +49,14 @@ def chosen_bands(
             "them: say which to filter (bands, --band N or --band all)"
         )
     return [filter.band]
+
+
+def _numbers(bands: Any) -> list[int]:
+    """Bands as numbers, whatever kind of integers they were given as."""
+    try:
+        return [operator.index(one) for one in (bands if np.iterable(bands) else [bands])]
+    except TypeError:
+        raise OptionError(f"bands is {bands!r:.80}: give numbers from 1, or 'all'") from None
 
 
 def require_match(

@@ -192,7 +192,6 @@ def _as_stored(
             np.clip(sharp, -limit, limit, out=sharp)
     with np.errstate(over="ignore", invalid="ignore"):
         pixels = sharp.astype(kind.dtype)
-    # The type may not have it: no pixel becomes -9999 of unsigned ones, or 0.5 of whole numbers.
     on_nodata = equals_nodata(pixels, kind.nodata) & ~kept
     if on_nodata.any():
         moved = int(np.count_nonzero(on_nodata))
@@ -209,11 +208,13 @@ def _not_above(top: int, dtype: np.dtype[Any]) -> float:
 
 
 def _beside(own: NDArray[Any], kind: StoredType) -> NDArray[Any]:
-    """The value next to that of nodata, towards what a pixel was."""
+    """The value next to that of nodata, towards what a pixel was; above where it was that value.
+
+    Pixels with data have that value where it is of fill that the image does not declare.
+    """
     assert kind.nodata is not None
     nodata = kind.dtype.type(kind.nodata)
     if kind.dtype.kind in "iu":
-        above = own > nodata
-        step = np.where(above, 1, -1)
+        step = np.where((own < nodata) | (nodata == np.iinfo(kind.dtype).max), -1, 1)
         return np.asarray((int(nodata) + step).astype(kind.dtype))
-    return np.asarray(np.nextafter(nodata, own))
+    return np.asarray(np.nextafter(nodata, np.where(own == nodata, np.inf, own)).astype(kind.dtype))

@@ -18,6 +18,7 @@ from acutance.curves import METRICS, Estimate
 from acutance.curves.estimate import normal_quantile
 from acutance.curves.metric_bounds import limit_fault
 from acutance.errors import OptionError
+from acutance.targets.recorded_direction import RecordedDirection
 from acutance.targets.target_result import TargetResult
 from acutance.targets.uncertainty_budget import STATED_TERMS, TERMS, systematic_share
 
@@ -235,7 +236,7 @@ def _of_one(result: Measurement | Record) -> tuple[Numbers, dict[str, str]]:
     verdict, names = result.verdict, result.measured_directions
     doubt = f"the measurement is {verdict.word}" if verdict.warns else ""
     numbers = {
-        str(name): {metric: getattr(one, metric) for metric in METRICS}
+        str(name): one.numbers if isinstance(one, RecordedDirection) else one.metrics()
         for name, one in result.directions.items()
         if name in names
     }

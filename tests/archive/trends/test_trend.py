@@ -60,6 +60,9 @@ def test_a_limit_that_is_passed_or_far_is_told(falling: Trend) -> None:
     assert "does not rise above 0.3 within 20 years, with a probability of" in upward.summary()
     with pytest.raises(ac.OptionError, match="the limit is nan"):
         falling.crosses(float("nan"))
+    for years in (float("inf"), 1e5, 0.0):
+        with pytest.raises(ac.OptionError, match="a time above 0 and up to 1000"):
+            falling.crosses(0.1, within_years=years)
 
 
 def test_bands_agree_with_single_dates(falling: Trend) -> None:

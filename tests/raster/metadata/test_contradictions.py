@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from datetime import UTC, datetime
+from datetime import UTC, date, datetime
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ from acutance.errors import ImageError
 from acutance.raster import write_geotiff
 from acutance.raster.metadata import read_statement
 from acutance.raster.metadata.sun import sun_angles
-from acutance.raster.metadata.times import utc_time
+from acutance.raster.metadata.times import time_or_day, utc_time
 
 PLACE = {"crs": "EPSG:32653", "transform": (60.0, 0.0, 669150.0, 0.0, -60.0, 5572050.0)}
 """In the middle of the Landsat scene, with pixels of twice its bands'."""
@@ -179,6 +179,15 @@ def test_the_sun(when, lon, lat, elevation, azimuth):
         ("20201221013941.1409645", datetime(2020, 12, 21, 1, 39, 41, 140964, UTC)),
         ("2020:12:21 01:39:41", datetime(2020, 12, 21, 1, 39, 41, tzinfo=UTC)),
         ("2021-11-21T02:02:56+00:00", datetime(2021, 11, 21, 2, 2, 56, tzinfo=UTC)),
+        ("2016-12-31T23:59:60Z", datetime(2017, 1, 1, tzinfo=UTC)),
+        ("20161231235960.25", datetime(2017, 1, 1, 0, 0, 0, 250000, UTC)),
+        ("2017-01-01T08:59:60+09:00", datetime(2017, 1, 1, tzinfo=UTC)),
+        ("2021-152T10:00:00Z", datetime(2021, 6, 1, 10, tzinfo=UTC)),
+        ("2021-06-01T24:00:00Z", datetime(2021, 6, 2, tzinfo=UTC)),
+        ("2021:06:01 24:00:00", datetime(2021, 6, 2, tzinfo=UTC)),
+        ("2021-366T10:00:00Z", None),
+        ("2021-06-01T24:00:01Z", None),
+        ("2021-06-01T12:34:60Z", None),
         ("2021-11-21", None),
         ("", None),
         ("0001-01-01T00:00:00+12:00", None),
@@ -189,3 +198,7 @@ def test_the_sun(when, lon, lat, elevation, azimuth):
 )
 def test_times(text, expected):
     assert utc_time(text) == expected
+
+
+def test_a_day_of_the_year_is_a_day():
+    assert (time_or_day("2020-366"), time_or_day("2021-366")) == (date(2020, 12, 31), None)

@@ -255,6 +255,13 @@ def test_mtl(product, band, gsd_m, form):
     }
 
 
+def test_the_temperature_of_landsat_is_of_the_band_of_level_1(product):
+    """It was called BST_B10, with the GSD of the reflective bands."""
+    text = MTL.replace("BAND_10", "BAND_ST_B10").replace("X_B10", "X_ST_B10")
+    found = product("LC08_X_ST_B10.TIF", {"LC08_X_MTL.txt": text})
+    assert (found.bands.value, found.gsd_m.value) == (("B10",), (100.0, 100.0))
+
+
 def mtl_as(form: str) -> str:
     """The same content in three forms."""
     if form == "txt":

@@ -12,11 +12,13 @@ import pytest
 
 import acutance as ac
 from acutance.archive import Archive, Entry, ImageEntry, TargetEntry
+from acutance.archive.published import published_entries
 from acutance.archive.specification import Specification
 from acutance.archive.trends import Event, Series, fit_trend
-from acutance.errors import OptionError
+from acutance.archive.trends.images import mean_of_images
+from acutance.errors import NothingSelectedError, OptionError
 from acutance.report.archive import sensor_page, trend_figure, trend_page
-from acutance.report.archive.sensor_state import states_of
+from acutance.report.archive.sensor_state import SeriesState, states_of
 from acutance.report.archive.sensor_tables import images_table, specification_table, state_table
 from acutance.report.archive.trend_page import trend_verdict
 from acutance.report.archive.wording import percent, signed, with_minus
@@ -314,3 +316,30 @@ def test_a_sensor_that_is_not_there_is_named(archive):
         sensor_page(archive, "QB03")
     with pytest.raises(OptionError, match="no metric 'mtf'"):
         sensor_page(archive, "QB02", metric="mtf")
+
+
+def test_a_sensor_without_one_of_the_main_numbers_has_its_page(tmp_path):
+    """The QuickBird tables print no RER."""
+    with Archive(tmp_path / "kept.db") as archive:
+        archive.add_entries(published_entries("quickbird-2003"))
+        page = sensor_page(archive, "QB02")
+        assert "FWHM [px]" in page
+        assert "nan" not in re.sub('<svg.*?</svg>|data:[^"]*', "", page, flags=re.DOTALL)
+        with pytest.raises(NothingSelectedError, match="rer: choose mtf_nyquist or fwhm_px"):
+            sensor_page(archive, "QB02", metric="rer")
+        with pytest.raises(OptionError, match="no measurement has a value of rer"):
+            archive.mean("rer", sensor="QB02", band="pan", level="CC", orientation="across")
+        path = tmp_path / "spec.toml"
+        path.write_text('[[requirement]]\nmetric = "rer"\nminimum = 0.3\n')
+        answers = archive.check(path, band="pan", orientation="across").answers
+        assert all("no image with a value of rer" in one.summary for one in answers)
+
+
+def test_a_number_that_some_directions_lack_is_missing_there():
+    """What the first direction lacks is in the table where another has it."""
+    state = SeriesState("across", "rer", {"rer": mean_of_images(series_of())}, 40, 40)
+    other = replace(state, name="along", found={"fwhm_px": state.found["rer"], **state.found})
+    table = state_table([state, other])
+    at = next(at for at, name in enumerate(table.columns) if name.startswith("FWHM"))
+    assert table.rows[0][at] == MISSING
+    assert table.rows[1][at] != MISSING

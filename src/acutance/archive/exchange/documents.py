@@ -18,6 +18,7 @@ __all__ = ["Stated", "entries_of"]
 _OF_MEASUREMENTS = ("acutance/target/1", "acutance/comparison/1")
 _OF_RESULTS = ("acutance/regions/1", "acutance/bands/1")
 _MARKS = ("band", "region")
+"""What such documents mark every result with."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,20 +53,26 @@ def entries_of(document: Any, stated: Stated) -> Iterator[Entry]:
     OptionError
         If it is none of them.
     """
+    yield from _entries(document, stated, {})
+
+
+def _entries(document: Any, stated: Stated, marks: Mapping[str, Any]) -> Iterator[Entry]:
+    """Entries of a document, or of a part of one that is marked with its band and region."""
     if isinstance(document, list):
         for one in document:
-            yield from entries_of(one, stated)
+            yield from _entries(one, stated, marks)
         return
+    if isinstance(document, Mapping):
+        own = {name: document[name] for name in _MARKS if document.get(name) is not None}
+        marks = {**marks, **own}
     schema = document.get("schema") if isinstance(document, Mapping) else None
     if schema == entry_document.SCHEMA:
         yield entry_document.entry_of_document(document)
     elif schema == SCHEMA:
-        yield _measured(document, stated)
+        yield _measured({**document, **marks}, stated)
     elif schema in _OF_MEASUREMENTS or schema in _OF_RESULTS:
-        # A result of many regions and bands names them once, for all that is measured there.
-        marks = {name: document[name] for name in _MARKS if document.get(name) is not None}
-        parts = _part(document, "measurements" if schema in _OF_MEASUREMENTS else "results")
-        yield from entries_of([_marked(one, marks) for one in parts], stated)
+        name = "measurements" if schema in _OF_MEASUREMENTS else "results"
+        yield from _entries(_part(document, name), stated, marks)
         yield from (_rejected(one, stated, marks) for one in _part(document, "rejected"))
     else:
         raise OptionError(
@@ -79,11 +86,6 @@ def _part(document: Mapping[str, Any], name: str) -> list[Any]:
     if not isinstance(part, list):
         raise OptionError(f"the document lacks {name}: it was cut or changed")
     return part
-
-
-def _marked(document: Any, marks: Mapping[str, Any]) -> Any:
-    """A part of a document with the band and the region of the whole, unless it has its own."""
-    return {**marks, **document} if isinstance(document, Mapping) else document
 
 
 def _measured(document: Mapping[str, Any], stated: Stated) -> Entry:
@@ -105,15 +107,16 @@ def _measured(document: Mapping[str, Any], stated: Stated) -> Entry:
 
 def _rejected(document: Mapping[str, Any], stated: Stated, marks: Mapping[str, Any]) -> Entry:
     try:
-        rejected = Rejected(document["stage"], document["reason"], document["values"])
-        path, own = rejected.values.get("path"), {**marks, **rejected.values}
+        values = {**marks, **document["values"]}
+        rejected = Rejected(document["stage"], document["reason"], values)
+        path, region = rejected.values.get("path"), rejected.values.get("region")
     except (AttributeError, KeyError, TypeError) as error:
         raise OptionError(f"a rejection of the document is damaged ({error!r})") from error
     image = ImageEntry(
         path=path, sensor=stated.sensor, level=stated.level, acquired=stated.acquired
     )
-    target = stated.target if stated.target is not None else own.get("region")
+    target = stated.target if stated.target is not None else region
     if isinstance(target, str):
         target = TargetEntry(name=target, kind="unknown")
-    band = stated.band if stated.band is not None else own.get("band")
+    band = stated.band if stated.band is not None else rejected.values.get("band")
     return Entry(rejected=rejected, image=image, target=target, band=band)

@@ -11,6 +11,7 @@ import shutil
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from datetime import datetime
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,7 @@ from acutance.archive.exchange.stac_item import (
 )
 from acutance.archive.packing import json_bytes
 from acutance.errors import OptionError
+from acutance.geometry.angles import wrap_direction
 
 __all__ = ["write_stac"]
 
@@ -140,11 +142,23 @@ def _geometry(
     """Where the targets lie, and the box about them."""
     if not places:
         return None, None
-    lon, lat = zip(*places, strict=True)
-    points = [list(place) for place in places]
+    points = [[lon if abs(lon) <= 180 else wrap_direction(lon), lat] for lon, lat in places]
     single = len(points) == 1
     geometry = {
         "type": "Point" if single else "MultiPoint",
         "coordinates": points[0] if single else points,
     }
-    return geometry, [min(lon), min(lat), max(lon), max(lat)]
+    lat = [one[1] for one in points]
+    west, east = _west_and_east([one[0] for one in points])
+    return geometry, [west, min(lat), east, max(lat)]
+
+
+def _west_and_east(lon: list[float]) -> tuple[float, float]:
+    """The sides of the narrowest box: beyond the antimeridian west is east of east (RFC 7946)."""
+    ordered = sorted(set(lon))
+    gaps = [after - before for before, after in pairwise(ordered)]
+    widest = max(gaps, default=0.0)
+    if 360 - (ordered[-1] - ordered[0]) >= widest:
+        return ordered[0], ordered[-1]
+    at = gaps.index(widest)
+    return ordered[at + 1], ordered[at]

@@ -19,6 +19,7 @@ from acutance.archive.weighted_means import WeightedMean, weighted_mean
 from acutance.curves.grid import Floats
 from acutance.curves.metric_bounds import lowest_of
 from acutance.curves.short_repr import ShortRepr
+from acutance.errors import OptionError
 
 __all__ = ["ImageMeans", "image_means", "joined_images", "mean_of_images"]
 
@@ -181,8 +182,15 @@ def mean_of_images(series: Series) -> WeightedMean:
     Parameters
     ----------
     series : Series
+
+    Raises
+    ------
+    OptionError
+        If no measurement has a value.
     """
     known = series.known()
+    if known.size == 0:
+        raise OptionError(f"no measurement has a value of {series.metric}: choose another number")
     lowest = lowest_of(series.metric)
     if np.unique(known.image).size == 1:
         # No other image shows how much they scatter: the targets of this one stand in.

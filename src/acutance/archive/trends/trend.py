@@ -38,6 +38,7 @@ _REQUIRED: Final = ("metric", "name", "measurements", "images", "posterior", "ba
 _LEVELS: Final = (0.5, 0.95)
 _DATES: Final = 121
 _HORIZON_YEARS: Final = 20.0
+_MAX_YEARS: Final = 1000.0
 _LESS_IS_SHARPER: Final = ("fwhm", "half_extent", "overshoot", "undershoot", "giqe_h")
 
 
@@ -257,12 +258,17 @@ class Trend(ShortRepr):
             Whether the sensor has to be above it; without it true of the MTF and the relative edge
             response, false of widths and overshoots.
         within_years : float, optional
-            How far ahead of the last image is looked.
+            How far ahead of the last image is looked: 1000 at most.
+
+        Raises
+        ------
+        OptionError
+            If it is longer, or the metric cannot have such a limit.
         """
-        if not (np.isfinite(limit) and within_years > 0):
+        if not (np.isfinite(limit) and 0 < within_years <= _MAX_YEARS):
             raise OptionError(
                 f"the limit is {limit:g} and the time {within_years:g} years: give a number, and "
-                "a time above 0"
+                f"a time above 0 and up to {_MAX_YEARS:g}"
             )
         if fault := limit_fault(self.metric, limit):
             raise OptionError(f"the limit {limit:g} of {self.metric} is never passed: {fault}")

@@ -17,6 +17,8 @@ ROOTS = ("LANDSAT_METADATA_FILE", "L1_METADATA_FILE")
 _CORNERS = ("UL", "UR", "LR", "LL")
 _PANCHROMATIC = {"8"}
 _THERMAL = {"10", "11", "6_VCID_1", "6_VCID_2"}
+_SURFACE_TEMPERATURE = "ST_B"
+"""Of level 2: FILE_NAME_BAND_ST_B10 is what FILE_NAME_BAND_10 is of level 1."""
 
 
 def read_mtl(document: Mapping[str, Any], source: str, image: str) -> Findings:
@@ -40,7 +42,7 @@ def read_mtl(document: Mapping[str, Any], source: str, image: str) -> Findings:
             "sensor": (word(items.get("SPACECRAFT_ID")), "SPACECRAFT_ID"),
             "level": _level(items),
             "acquired": _acquired(items),
-            "bands": (None if band is None else (f"B{band}",), f"FILE_NAME_BAND_{band}"),
+            "bands": (_name(band), f"FILE_NAME_BAND_{band}"),
             "gsd_m": (gsd, gsd_place),
             "sun_elevation_deg": (number(items.get("SUN_ELEVATION")), "SUN_ELEVATION"),
             "sun_azimuth_deg": (number(items.get("SUN_AZIMUTH")), "SUN_AZIMUTH"),
@@ -59,13 +61,18 @@ def _flat(group: Any) -> dict[str, Any]:
 
 
 def _band(items: Mapping[str, Any], image: str) -> str | None:
-    """The band whose file is the image."""
+    """The band whose file is the image, as its item names it."""
     stem = image.rpartition(".")[0].upper()
     for name, value in items.items():
         found = re.match(r"FILE_NAME_BAND_(\w+)$", name)
         if found and str(value).rpartition(".")[0].upper() == stem:
             return found[1]
     return None
+
+
+def _name(band: str | None) -> tuple[str, ...] | None:
+    """A band has one name at all levels."""
+    return None if band is None else (f"B{band.removeprefix(_SURFACE_TEMPERATURE)}",)
 
 
 def _acquired(items: Mapping[str, Any]) -> tuple[datetime | date | None, str]:
@@ -88,7 +95,8 @@ def _gsd(items: Mapping[str, Any], band: str | None) -> tuple[tuple[float, float
         return None, ""
     kind = "PANCHROMATIC" if band in _PANCHROMATIC else "REFLECTIVE"
     of_mapper = str(items.get("SPACECRAFT_ID", "")).endswith(("4", "5"))
-    if band in _THERMAL or (band == "6" and of_mapper):
+    is_temperature = band.startswith(_SURFACE_TEMPERATURE)
+    if is_temperature or band in _THERMAL or (band == "6" and of_mapper):
         kind = "THERMAL"
     size = number(items.get(f"GRID_CELL_SIZE_{kind}"))
     return (None if size is None else (size, size)), f"GRID_CELL_SIZE_{kind}"

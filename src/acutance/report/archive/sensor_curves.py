@@ -90,7 +90,7 @@ def _curves(records: Sequence[Record]) -> dict[str, list[tuple[np.ndarray, np.nd
     found: dict[str, list[tuple[np.ndarray, np.ndarray]]] = {}
     for record in records:
         for name in record.measured_directions:
-            if record.directions[name].document.get("mtf") is not None:
+            if record.directions[name].has_curve("mtf"):
                 at, value, _ = record.directions[name].curve("mtf")
                 found.setdefault(name, []).append((at, value))
     return {name: found[name] for name in ("across", "along") if name in found}

@@ -7,9 +7,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
+import numpy as np
+
 from acutance.archive import Archive
 from acutance.archive.requirement_selection import asked_of, asks_nothing
 from acutance.archive.specification import read_specification
+from acutance.curves import MAIN_NUMBERS
 from acutance.curves.metric_words import METRIC_WORDS
 from acutance.errors import NothingSelectedError, OptionError
 from acutance.report.archive.gsd_bands import with_gsd_bands
@@ -76,7 +79,7 @@ def sensor_page(
     OptionError
         If there is no such metric.
     NothingSelectedError
-        If there is no measurement of the sensor with such a verdict.
+        If there is no measurement of the sensor with such a verdict, or with a value of the metric.
     """
     if metric not in METRIC_WORDS:
         raise OptionError(f"there is no metric {metric!r}, only {', '.join(METRIC_WORDS)}")
@@ -92,6 +95,12 @@ def sensor_page(
         )
     # Told apart by their GSD here, too, and with the note that their band is not named.
     states = states_of(rows, sensor, metric, events)
+    if not states:
+        known = [one for one in MAIN_NUMBERS if np.isfinite(rows[one]).any()]
+        raise NothingSelectedError(
+            f"none of the {len(rows)} measurements of {sensor!r} has a value of {metric}: choose "
+            f"{' or '.join(known) or 'another number'}"
+        )
     rows = with_gsd_bands(rows)
     check, unasked = None, ""
     if specification is not None:

@@ -31,7 +31,8 @@ class SeriesState:
     metric : str
         What is drawn.
     found : dict of str to Trend or WeightedMean
-        By metric; means where images are too few, or have no dates.
+        By metric; means where images are too few, or have no dates. Metrics without any value, as
+        papers do not print all, are left out.
     measurements, images : int
     days : tuple of date
         Of the first and of the last image; empty where none has a date.
@@ -70,7 +71,8 @@ def states_of(
         Measurements of one sensor.
     sensor : str
     metric : str
-        What is drawn; the main numbers are tabulated with it.
+        What is drawn, and the main numbers are tabulated with it; what has no value of it has no
+        state.
     events : sequence of Event
     """
     metrics = tuple(dict.fromkeys((metric, *MAIN_NUMBERS)))
@@ -83,6 +85,8 @@ def states_of(
         found: dict[str, Trend | WeightedMean] = {}
         for one in metrics:
             series = several[one][at]
+            if series.known().size == 0:
+                continue
             try:
                 found[one] = fit_trend(series, events)
             except OptionError:

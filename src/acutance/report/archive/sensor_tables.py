@@ -33,7 +33,7 @@ _VERDICTS = ("good", "usable", "doubtful", "invalid")
 
 def state_table(states: Sequence[SeriesState]) -> Table:
     """Every band and direction: numbers on the day of the last image, and their drift."""
-    metrics = tuple(states[0].found)
+    metrics = tuple(dict.fromkeys(metric for one in states for metric in one.found))
     rows: list[tuple[str, ...]] = []
     for one in states:
         trend = one.trend
@@ -56,6 +56,8 @@ def state_table(states: Sequence[SeriesState]) -> Table:
 
 
 def _level_and_drift(state: SeriesState, metric: str) -> str:
+    if metric not in state.found:
+        return MISSING
     level, found = word_estimate(state.level(metric)).value_and_std, state.found[metric]
     if not isinstance(found, Trend):
         return level

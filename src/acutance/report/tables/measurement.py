@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -42,6 +43,8 @@ HEADLINES = (
 
 PULSE_NUMBERS = ("width_px", "width_m", "prf_fwhm_px", "prf_fwhm_m")
 
+_UNDEFINED = Estimate(math.nan, math.nan)
+
 Numbers = dict[str, dict[str, Estimate]]
 """Numbers by direction and name."""
 
@@ -62,12 +65,17 @@ def recorded_numbers(record: Record) -> Numbers:
     }
 
 
+def _names(numbers: Numbers) -> tuple[str, ...]:
+    """The numbers that any direction has: a printed table may have some in one of them only."""
+    return tuple(dict.fromkeys(name for found in numbers.values() for name in found))
+
+
 def headline_table(numbers: Numbers, measurement: Measurement | None = None) -> Table:
     """The main numbers in one table: a row a direction, a column a number."""
-    first = next(iter(numbers.values()))
-    names = [name for name in HEADLINES if name in first]
+    there = _names(numbers)
+    names = [name for name in HEADLINES if name in there]
     rows = tuple(
-        (direction, *(word_estimate(found[name]).three_lines for name in names))
+        (direction, *(word_estimate(found.get(name, _UNDEFINED)).three_lines for name in names))
         for direction, found in numbers.items()
     )
     words = [
@@ -87,9 +95,9 @@ def numbers_table(measurement: Measurement | Record) -> Table:
         else numbers_of(measurement)
     )
     rows = []
-    for name in next(iter(numbers.values())):
+    for name in _names(numbers):
         words = measurement_metric_words(measurement, name)
-        cells = (word_estimate(found[name]) for found in numbers.values())
+        cells = (word_estimate(found.get(name, _UNDEFINED)) for found in numbers.values())
         pairs = (part for cell in cells for part in (cell.value_and_std, cell.interval))
         rows.append((words.label, *pairs, words.unit, words.meaning))
     named = (

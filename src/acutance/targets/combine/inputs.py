@@ -241,6 +241,9 @@ def _slices(record: Record) -> tuple[OtfSlices, bool]:
     line = record.document.get("line")
     across_deg = 0.0 if record.image.along_track == "y" else 90.0
     directions_deg = {"across": across_deg, "along": 90.0 - across_deg}
+    without = [name for name, one in record.directions.items() if not one.has_curve("mtf")]
+    if without:
+        raise OptionError(f"it holds no MTF {without[0]} track, numbers alone")
     curves = [
         (one.document["mtf"], float(line["normal_deg"]) if line else directions_deg[name])
         for name, one in record.directions.items()
