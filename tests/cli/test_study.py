@@ -66,6 +66,13 @@ def test_json_is_the_document_alone(acutance):
         (("angle", "--set", "places=0"), "there has to be a place"),
         (("angle", "--set", "sensor=snow"), "the sensor snow is no .toml file"),
         (("all", "--json"), "belong to one study"),
+        (("snr", "--set", "noise_dn=5,many"), "write a number or several"),
+        (
+            ("snr", "--set", "noise_dn='a','b'"),
+            "noise_dn is several numbers, as in noise_dn=2.0",
+        ),
+        (("snr", "--set", "pulse_dn=1,2,3"), "pulse_dn is 2 numbers, as in pulse_dn=100.0,1200.0"),
+        (("snr", "--set", "draws=True"), "draws is a whole number, as in draws=10"),
     ],
 )
 def test_what_makes_no_sense_is_refused(acutance, words, message):

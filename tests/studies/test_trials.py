@@ -9,9 +9,11 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from acutance import OptionError
+from acutance.optics import RasterPsf
 from acutance.studies import Execution, run_trials
 from acutance.studies.journal import Journal, journal_key
 
@@ -157,3 +159,15 @@ def test_impossible_executions_are_refused(tmp_path):
     file.write_text("")
     with pytest.raises(OptionError, match="cannot be written"):
         run_trials("t", Options(), TRIALS, draw, Execution(workers=1, folder=file))
+
+
+def test_sensors_of_other_arrays_have_other_journals():
+    """Of an array the repr shows its borders alone, where a PSF is 0."""
+
+    def key(sigma_px):
+        y, x = np.mgrid[-40:41, -40:41] * 0.1
+        light = np.where(np.hypot(x, y) < 3.5, np.exp(-0.5 * (x**2 + y**2) / sigma_px**2), 0)
+        return journal_key("t", RasterPsf(light / light.sum(), 0.1), 1, "0")
+
+    assert key(0.4) != key(0.7)
+    assert key(0.4) != key(0.4 * (1 + 1e-12))

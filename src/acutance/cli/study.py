@@ -6,7 +6,7 @@ import ast
 from collections.abc import Callable, Sequence
 from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, get_args, get_type_hints
 
 import typer
 
@@ -111,19 +111,35 @@ def _options(kind: type[Any], changes: Sequence[str]) -> Any:
         if option not in known:
             raise OptionError(f"--set {text}: the options are {', '.join(sorted(known))}")
         changed[option] = _value(option, value, text)
-    defaults = kind()
+    hints, defaults = get_type_hints(kind), kind()
     for option, value in changed.items():
-        expected = getattr(defaults, option)
-        if isinstance(expected, float) and isinstance(value, int):
-            changed[option] = float(value)
-        elif isinstance(expected, tuple) and not isinstance(value, tuple):
-            changed[option] = (value,)
-        elif type(value) is not type(expected):
-            wanted = _KINDS.get(type(expected), "of another kind")
-            raise OptionError(
-                f"--set {option}={value}: {option} is {wanted}, as in {option}={expected}"
-            )
+        if option != "sensor":
+            changed[option] = _checked(option, value, hints[option], getattr(defaults, option))
     return kind(**changed)
+
+
+def _checked(option: str, value: Any, hint: Any, default: Any) -> Any:
+    """A value of the type that an option has."""
+    from pydantic import TypeAdapter, ValidationError
+
+    if isinstance(default, tuple):
+        value = tuple(value) if isinstance(value, list | tuple) else (value,)
+    try:
+        return TypeAdapter(hint).validate_python(value, strict=True)
+    except ValidationError as error:
+        wanted = _KINDS.get(type(default), "of another kind")
+        if isinstance(default, tuple) and Ellipsis not in get_args(hint):
+            wanted = f"{len(get_args(hint))} numbers"
+        raise OptionError(
+            f"--set {option}={value}: {option} is {wanted}, as in {option}={_as_typed(default)}"
+        ) from error
+
+
+def _as_typed(default: Any) -> str:
+    """A default as it is written behind ``--set``; the first of many."""
+    if isinstance(default, tuple):
+        return ",".join(map(str, default[:3]))
+    return str(default)
 
 
 def _value(option: str, value: str, text: str) -> Any:

@@ -29,7 +29,8 @@ class Noise:
     quantum : float, optional
         Step of the quantisation in image units (1 for whole digital numbers); 0 leaves it out.
     saturation : float, optional
-        Level the image cannot exceed, in image units.
+        Level that the detector cannot exceed, in image units; it is rounded as every other, at most
+        half a step of the quantisation upwards.
     """
 
     read: float = 0.0

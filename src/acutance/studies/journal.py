@@ -6,11 +6,14 @@ import hashlib
 import json
 import math
 import os
+import sys
 import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any
+
+import numpy as np
 
 from acutance.errors import OptionError
 
@@ -29,7 +32,9 @@ def journal_key(study: str, options: object, seed: int, version: str) -> str:
     version : str
         Of the software.
     """
-    text = json.dumps([study, repr(options), seed, version])
+    # Of an array the repr shows a few numbers of the borders, unless it is asked for all of them.
+    with np.printoptions(threshold=sys.maxsize, floatmode="unique"):
+        text = json.dumps([study, repr(options), seed, version])
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
