@@ -9,6 +9,9 @@ from bare_ground import bare_ground
 
 import acutance as ac
 from acutance import optics, simulate
+from acutance.raster import Box
+from acutance.scan.all_windows import part_of
+from acutance.scan.scene_edges import SceneEdges
 
 SENSOR = simulate.reference_systems()["gaussian"]
 
@@ -108,6 +111,24 @@ def test_a_part_of_an_image_is_scanned(ideal, few_forms):
     assert part.edges.row.min() >= 90
     assert part.edges.col.max() <= 560
     assert part.image.roi == (100, 50, 450, 500)
+
+
+def test_a_box_is_a_region_as_its_corners_are():
+    """Windows are read with a margin: the numbers of a box changed with what lies beyond it."""
+    image = ac.raster.Image.from_array(np.zeros((90, 80)))
+    box, region = part_of(image, (20, 10, 40, 30))
+    assert region.mask(Box.whole(image.shape)).sum() == 40 * 30
+    assert region.mask(box).all()
+    for whole in (None, (0, 0, 90, 80)):
+        assert part_of(image, whole) == (Box.whole(image.shape), None)
+
+
+def test_tables_hold_places_of_large_scenes():
+    row = {"row": 15234.56784, "col": 20123.45671, "normal_deg": 12.0, "length_px": 40.0}
+    edges = SceneEdges.of_rows([row])
+    assert edges.to_csv().splitlines()[1].startswith("15234.5678,20123.4567,12.0,40.0,")
+    (feature,) = edges.to_geojson()["features"]
+    assert (feature["properties"]["row"], feature["properties"]["col"]) == (15234.5678, 20123.4567)
 
 
 def test_a_polygon_leaves_out_what_lies_beside_it(ideal, few_forms):

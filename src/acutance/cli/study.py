@@ -6,7 +6,7 @@ import ast
 from collections.abc import Callable, Sequence
 from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, get_args, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, get_args, get_origin, get_type_hints
 
 import typer
 
@@ -120,19 +120,27 @@ def _options(kind: type[Any], changes: Sequence[str]) -> Any:
 
 def _checked(option: str, value: Any, hint: Any, default: Any) -> Any:
     """A value of the type that an option has."""
-    from pydantic import TypeAdapter, ValidationError
-
     if isinstance(default, tuple):
         value = tuple(value) if isinstance(value, list | tuple) else (value,)
-    try:
-        return TypeAdapter(hint).validate_python(value, strict=True)
-    except ValidationError as error:
-        wanted = _KINDS.get(type(default), "of another kind")
-        if isinstance(default, tuple) and Ellipsis not in get_args(hint):
-            wanted = f"{len(get_args(hint))} numbers"
-        raise OptionError(
-            f"--set {option}={value}: {option} is {wanted}, as in {option}={_as_typed(default)}"
-        ) from error
+    if _fits(value, hint):
+        return float(value) if hint is float else value
+    wanted = _KINDS.get(type(default), "of another kind")
+    if isinstance(default, tuple) and Ellipsis not in get_args(hint):
+        wanted = f"{len(get_args(hint))} numbers"
+    raise OptionError(
+        f"--set {option}={value}: {option} is {wanted}, as in {option}={_as_typed(default)}"
+    )
+
+
+def _fits(value: Any, hint: Any) -> bool:
+    """Whether a value is a number, or a tuple of values, as an option's annotation asks."""
+    if get_origin(hint) is not tuple:
+        accepted = (int, float) if hint is float else hint
+        return isinstance(value, accepted) and not isinstance(value, bool)
+    hints = get_args(hint)
+    if Ellipsis in hints:
+        hints = hints[:1] * len(value) if isinstance(value, tuple) else ()
+    return isinstance(value, tuple) and len(value) == len(hints) and all(map(_fits, value, hints))
 
 
 def _as_typed(default: Any) -> str:

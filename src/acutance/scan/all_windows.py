@@ -30,7 +30,9 @@ _MIN_SIDE_PX = 8
 
 
 def part_of(image: Image, roi: RoiLike) -> tuple[Box, Region | None]:
-    """The part of an image to be read, and the region in it if that is no box.
+    """The part of an image to be read, and the region in it unless it is the whole image.
+
+    Windows are read with a margin, of which pixels beyond the region are no part.
 
     Raises
     ------
@@ -38,9 +40,11 @@ def part_of(image: Image, roi: RoiLike) -> tuple[Box, Region | None]:
         If it is not inside the image, or smaller than any edge.
     """
     where = Box.whole(image.shape) if roi is None else chosen_region(roi)
-    region = where if isinstance(where, Region) else None
     box = where if isinstance(where, Box) else where.box(image.shape)
     box.require_inside(image.shape)
+    region = None if roi is None else where
+    if isinstance(region, Box):
+        region = None if box == Box.whole(image.shape) else Region.from_box(box)
     if min(box.shape) < _MIN_SIDE_PX:
         raise RegionError(
             f"{box.height} x {box.width} pixels were to be scanned, and an edge needs at least "

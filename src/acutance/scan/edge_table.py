@@ -21,6 +21,8 @@ ToLonLat = Callable[[Floats, Floats], tuple[Floats, Floats]]
 """Function of (row, col): their longitudes and latitudes in degrees."""
 
 _DIGITS = 6
+_PLACES, _PLACE_DECIMALS = ("row", "col"), 4
+"""Of pixels: known to .004 px, also where a scene has 40,000 of them."""
 _DEGREES = ("lon_deg", "lat_deg")
 _DECIMALS = 8
 """Of degrees: a millimetre."""
@@ -63,7 +65,7 @@ class EdgeTable:
         writer = csv.writer(text, lineterminator="\n")
         columns = self.placed_columns(lonlat)
         writer.writerow(columns)
-        cells = (map(_degrees if name in _DEGREES else _cell, column)
+        cells = (map(_degrees, column) if name in _DEGREES else map(_cell, _values(name, column))
                  for name, column in columns.items())  # fmt: skip
         writer.writerows(zip(*cells, strict=True))
         return text.getvalue()
@@ -127,11 +129,12 @@ class EdgeTable:
             x, y = (col, row) if lonlat is None else lonlat(row, col)
             ends.append(np.stack([x, y], axis=1))
         lines = np.round(np.stack(ends, axis=1), _DECIMALS).tolist()
+        values = {name: _values(name, column) for name, column in columns.items()}
         features = [
             {
                 "type": "Feature",
                 "geometry": {"type": "LineString", "coordinates": line},
-                "properties": {name: _value(column[i]) for name, column in columns.items()},
+                "properties": {name: column[i] for name, column in values.items()},
             }
             for i, line in enumerate(lines)
         ]
@@ -155,6 +158,13 @@ def _require_function(lonlat: Any) -> None:
     )
 
 
+def _values(name: str, column: NDArray[Any]) -> list[Any]:
+    """A column as it is written: places to a ten thousandth of a pixel, see `_value`."""
+    if name in _PLACES:
+        return [round(float(one), _PLACE_DECIMALS) for one in column]
+    return list(map(_value, column))
+
+
 def _value(one: Any) -> Any:
     """A number of six digits, or None; a truth value; a text."""
     if isinstance(one, np.bool_):
@@ -168,8 +178,7 @@ def _degrees(one: Any) -> str:
     return f"{one:.{_DECIMALS}f}" if np.isfinite(one) else ""
 
 
-def _cell(one: Any) -> str:
-    value = _value(one)
+def _cell(value: Any) -> str:
     if isinstance(value, bool):
         return "1" if value else "0"
     return "" if value is None else str(value)

@@ -344,3 +344,29 @@ def test_a_part_that_tells_nothing_leaves_the_document_strict(together):
     document = mute.to_dict()
     assert document["p_value"] is None
     json.dumps(document, allow_nan=False)
+
+
+def test_a_gsd_that_is_stated_makes_no_product_of_two():
+    half, one = _edge_of_pixels(0.5, 1, 6, "across"), _edge_of_pixels(1.0, 2, 7, "along")
+    with pytest.raises(ac.OptionError, match=r"different pixels: .* 0\.5 m, .* 1 m, which"):
+        ac.combine([half, one], gsd_m=1.0)
+    # Each states the distance along its own normal alone: pixels that are not square.
+    oblong = ac.combine([half, one], gsd_m=ac.Gsd(1.0, 0.5))
+    assert oblong.across.fwhm_m.value == pytest.approx(half.fwhm_m.value, rel=0.02)
+    # Another GSD for both, as where the one of their files is wrong.
+    same = _edge_of_pixels(0.5, 2, 7, "along")
+    assert ac.combine([half, same], gsd_m=0.7).across.fwhm_m is not None
+
+
+def test_one_file_by_two_names_is_one_file(tmp_path, monkeypatch):
+    image, _ = simulate.edge(SENSOR, angle_deg=6, snr=100, rng=np.random.default_rng(1))
+    np.save(tmp_path / "e.npy", image)
+    monkeypatch.chdir(tmp_path)
+    names = "e.npy", str(tmp_path / "e.npy")
+    found = [
+        ac.measure_edge(ac.open_image(name), method=method).to_dict()
+        for name, method in zip(names, ("spline", "fermi"), strict=True)
+    ]
+    other = edge(7, "along", 2)
+    checks = {check.name: check.value for check in ac.combine([*found, other]).checks}
+    assert checks["shared_targets"] == 1

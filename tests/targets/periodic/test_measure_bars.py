@@ -360,3 +360,9 @@ def test_a_normal_of_nearly_zero_has_no_sign():
     assert table.rows[0] == ("direction of the normal", "0.00°")
     titles = [axes.get_title(loc="left") for axes in draw(found).axes]
     assert "MTF along the normal, 0.0°" in titles
+
+
+def test_a_count_for_the_search_is_refused_where_groups_are_stated():
+    group = Bars(row=20.0, col=20.0, period_px=4.0, count=5, length_px=20.0, normal_deg=3.0)
+    with pytest.raises(ac.OptionError, match="count=3 is for the search of groups"):
+        BarsOptions(groups=(group,), count=3)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 
 import numpy as np
@@ -154,7 +155,9 @@ def _shared(inputs: Sequence[MeasuredInput]) -> list[str]:
 
 def _same_target(one: MeasuredInput, other: MeasuredInput) -> bool:
     """Whether two measurements took the same target of the same image."""
-    if one.image.path is None or one.image.path != other.image.path:
+    paths = one.image.path, other.image.path
+    # Two runs write the name of one file as they were given it.
+    if None in paths or len(set(map(os.path.realpath, filter(None, paths)))) > 1:
         return False
     if one.kind != other.kind:
         return "scene" in (one.kind, other.kind) and _overlap(one.image.roi, other.image.roi)

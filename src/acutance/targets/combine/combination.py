@@ -19,7 +19,7 @@ from acutance.targets.combine.curves import ChiSquare, OtfSamples
 from acutance.targets.combine.fit import combine_curves
 from acutance.targets.combine.inputs import Combinable, MeasuredInput, common_flight, read_inputs
 from acutance.targets.combine.options import CombineOptions
-from acutance.targets.combine.pixel_size import common_gsd, without_gsd
+from acutance.targets.combine.pixel_size import common_gsd, require_one_product, without_gsd
 from acutance.targets.options import chosen_options
 from acutance.targets.record import ImageInfo
 
@@ -71,7 +71,10 @@ def combine(
     _require_two(inputs)
     gsd = Gsd.given(gsd_m)
     unknown = without_gsd(inputs) if gsd is None else ()
-    gsd = gsd or common_gsd(inputs)
+    if gsd is None:
+        gsd = common_gsd(inputs)
+    else:
+        require_one_product(inputs, gsd)
     fit = combine_curves(
         [_curve(one) for one in inputs], detector_px=chosen.detector_px, forms=chosen.forms
     )

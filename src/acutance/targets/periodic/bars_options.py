@@ -54,6 +54,11 @@ class BarsOptions:
                 f"{self.count} bars in a group: give 2 to 40; a single bar is a pulse "
                 "(measure_pulse, acutance pulse)"
             )
+        if self.count is not None and self.groups:
+            raise OptionError(
+                f"count={self.count} is for the search of groups, and groups are stated, each with "
+                "its own: leave one of them out"
+            )
         for number, one in enumerate(self.groups, 1):
             if one.count < 2:
                 raise OptionError(
