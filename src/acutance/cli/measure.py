@@ -108,7 +108,7 @@ class _Part:
     @property
     def label(self) -> str:
         """What it is called in messages."""
-        band = [f"band {self.image.band}"] if self.is_of_bands else []
+        band = [f"band {self.image.band_label}"] if self.is_of_bands else []
         return ", ".join([*band, *([f"region {self.name}"] if self.name else [])])
 
     @property
@@ -122,6 +122,8 @@ class _Part:
     def document(self) -> dict[str, Any]:
         """What its document is marked with."""
         band = {"band": str(self.image.band)} if self.is_of_bands else {}
+        if self.is_of_bands and self.image.band_name is not None:
+            band["band_name"] = self.image.band_name
         return band | ({"region": self.name} if self.name else {})
 
 

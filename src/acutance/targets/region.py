@@ -89,6 +89,8 @@ def image_info(image: Image, box: Box, gsd: Gsd | None) -> ImageInfo:
         None if gsd is None else (gsd.row_m, gsd.col_m),
         None if image.characteristic is None else image.characteristic.words,
         (of_file.row_m, of_file.col_m) if gsd and of_file and _is_another(gsd, of_file) else None,
+        image.band_name,
+        None if image.path is None else image.band_count,
     )  # fmt: skip
 
 
