@@ -113,6 +113,7 @@ class Archive(Questions, RowsOfRuns):
         acquired : datetime, date or str, optional
             When the image was taken; without a time zone UTC.
         target : str or TargetEntry, optional
+            Without it the name of the measured region, if it has one.
         image : ImageEntry, optional
             What is known of the image, instead of `sensor` and `acquired`.
         band : str, optional
@@ -146,6 +147,8 @@ class Archive(Questions, RowsOfRuns):
                 acquired=None if acquired is None else as_utc(acquired, "acquired"),
                 gsd_m=record.image.pixel_gsd_m,
             )
+        if target is None:
+            target = record.image.region
         if isinstance(target, str):
             target = TargetEntry(name=target, kind=record.kind)
         if not isinstance(target, TargetEntry | None):

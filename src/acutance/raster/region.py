@@ -132,6 +132,8 @@ class Region(ShortRepr):
         Corners as (row, col); a repeated last corner is dropped. At least 3.
     holes : tuple of (k, 2) arrays, optional
         Outlines of what is left out, in the same coordinates.
+    name : str, optional
+        What it is called, as a file of regions names it.
 
     Raises
     ------
@@ -142,6 +144,7 @@ class Region(ShortRepr):
 
     vertices: Floats
     holes: tuple[Floats, ...] = ()
+    name: str = ""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "vertices", _outline(self.vertices))

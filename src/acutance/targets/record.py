@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from acutance.curves import METRICS
 from acutance.curves.direction import gsd_along
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
@@ -76,6 +77,8 @@ class ImageInfo:
         As the file or a document beside it states it.
     band_count : int or None
         Bands of the file; ``None`` where it is not known.
+    region : str or None
+        What the region is called, where it has a name.
     """
 
     path: str | None = None
@@ -88,6 +91,7 @@ class ImageInfo:
     file_gsd_m: tuple[float, float] | None = None
     band_name: str | None = None
     band_count: int | None = None
+    region: str | None = None
 
     @property
     def band_label(self) -> str:
@@ -128,6 +132,7 @@ class ImageInfo:
             "file_gsd_m": None if self.file_gsd_m is None else list(self.file_gsd_m),
             "band_name": self.band_name,
             "band_count": self.band_count,
+            "region": self.region,
         }
 
     @classmethod
@@ -149,6 +154,7 @@ class ImageInfo:
             None if of_file is None else (float(of_file[0]), float(of_file[1])),
             document.get("band_name"),
             document.get("band_count"),
+            document.get("region"),
         )
 
 
@@ -198,6 +204,15 @@ class Record(ShortRepr, HasDirections[RecordedDirection], HasChecks):
                 "acutance wrote"
             ) from error
         return record
+
+    def __getattr__(self, name: str) -> Any:
+        # Who comes from a measurement of one direction looks for its numbers here.
+        if name in (*METRICS, "mtf", "lsf", "esf"):
+            first = next(iter(self.directions))
+            raise AttributeError(
+                f"a Record has its numbers by direction: read .{first}.{name}", name=name, obj=self
+            )
+        raise AttributeError(f"'Record' object has no attribute {name!r}", name=name, obj=self)
 
     def to_dict(self) -> dict[str, Any]:
         """The document; nothing is lost by `from_dict`."""

@@ -89,7 +89,8 @@ def _measured(document: Mapping[str, Any], stated: Stated) -> Entry:
         acquired=stated.acquired,
         gsd_m=record.image.pixel_gsd_m,
     )
-    target = stated.target if stated.target is not None else document.get("region") or None
+    named = document.get("region") or record.image.region
+    target = stated.target if stated.target is not None else named
     if isinstance(target, str):
         target = TargetEntry(name=target, kind=record.kind)
     # The same name whether bands were measured one by one or together; documents of several bands
