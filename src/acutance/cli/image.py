@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from acutance.cli.options import ImageArgument, JsonOption
-from acutance.raster.band_label import label_band
 
 if TYPE_CHECKING:
     from acutance.raster import Image
@@ -82,6 +81,8 @@ def _text(found: ImageStatement, pixels: Image) -> str:
 
 def _bands(found: ImageStatement, count: int) -> str:
     """Numbers and names of the bands."""
+    from acutance.raster.band_label import label_band
+
     if found.bands is None:
         return "1, without a name" if count == 1 else f"{count}, without names (1 to {count})"
     named = ", ".join(
