@@ -36,7 +36,7 @@ print(report.text(measurement))
 # Every number and its true value.
 for name, estimate in measurement.metrics().items():
     true = getattr(truth.response, name)
-    print(f"{name:22}{estimate!s:>20}   truth {true.value:.4f}")
+    print(f"{name:22}{estimate:>20}   truth {true.value:.4f}")
 
 # %%
 # The same steps as a figure, and the curves as arrays.

@@ -32,7 +32,8 @@ def test_a_measurement_comes_back_whole(archive, edge_record):
         assert found[metric][0] == number.value
         assert found[f"{metric}_std"][0] == number.std
     assert found["gsd_m"][0] == 0.7
-    assert found["angle_deg"][0] == edge_record.document["line"]["normal_deg"]
+    assert found["normal_deg"][0] == edge_record.document["line"]["normal_deg"]
+    assert found["angle_deg"][0] == found["normal_deg"][0]
     assert found["verdict"][0] == edge_record.verdict.word
     assert found["snr"][0] == edge_record.snr
 

@@ -226,7 +226,7 @@ def test_one_measurement_of_each_tells_nothing_without_deviations() -> None:
     assert one.answer == "cannot be told"
     assert one.to_dict()["probability"] is None
     assert "One image" in one.summary
-    assert "edge a and edge b differ cannot be told (mtf_nyquist, without" in one.sentence
+    assert "edge a and edge b differ cannot be told (MTF at Nyquist, without" in one.sentence
 
 
 def test_what_cannot_be_compared_is_refused() -> None:

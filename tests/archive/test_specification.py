@@ -182,6 +182,8 @@ def test_files_that_are_no_specification(tmp_path: Path) -> None:
         read_specification(path)
     with pytest.raises(ac.OptionError, match="requirement: field required"):
         Specification.of({})
+    with pytest.raises(ac.OptionError, match=r"write \[\[requirement\]\]"):
+        Specification.of({"requirement": {"metric": "rer", "minimum": 0.3}})
 
 
 def test_on_a_day_far_from_the_images_no_number_of_images_is_told() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from datetime import UTC, date, datetime
+from pathlib import Path
 
 import pytest
 
@@ -131,6 +132,25 @@ def test_what_is_stated_of_no_image_is_refused(tmp_path):
     wrong = StatedOfImages(images=("K3_*.tif", "K4_*.tif"), sensor="C")
     with pytest.raises(OptionError, match=r"stated 2 is of images that match K4_\*\.tif"):
         require_stated_images(files, (right, wrong))
+
+
+@pytest.mark.parametrize(
+    "pattern", ["K3_*.tif", "*K3*.tif", "**/K3_*.tif", "images/**/K3_*.tif", "images/deep/K3_1.tif"]
+)
+@pytest.mark.parametrize("place", [".", "plans", "elsewhere"])
+def test_patterns_mean_the_same_from_every_folder(tmp_path, monkeypatch, pattern, place):
+    image = tmp_path / "plans" / "images" / "deep" / "K3_1.tif"
+    for folder in (image.parent, tmp_path / "elsewhere"):
+        folder.mkdir(parents=True)
+    for one in (image, image.with_name("other.tif")):
+        one.write_bytes(b"x")
+    monkeypatch.chdir(tmp_path / place)
+    plan = os.path.relpath(tmp_path / "plans")
+    stated = {"images": pattern, "sensor": "K3"}
+    found = plan_of({**NEEDED, "images": "images/**/*.tif", "stated": stated}, "p", Path(plan))
+    files = list_images(found.images)
+    require_stated_images(files, found.stated)
+    assert [stated_of(one.path, found.stated).sensor for one in files] == ["K3", None]
 
 
 def test_images_are_listed_once(tmp_path):

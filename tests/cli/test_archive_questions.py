@@ -103,7 +103,7 @@ def test_across_and_along_are_compared(acutance, place):
     assert done.exit_code == 0
     first, second = done.stdout.splitlines()
     assert first.startswith("KOMPSAT-3: across is sharper than along by ")
-    assert "(fwhm_px, 95 %: " in second
+    assert "(FWHM, 95 %: " in second
     done = acutance("archive", "compare", place, "--metric", "rer", "--metric", "fwhm_px", "--json")
     assert [one["metric"] for one in json.loads(done.stdout)["comparisons"]] == ["rer", "fwhm_px"]
     done = acutance("archive", "compare", place, "--json", "--metric", "rer")

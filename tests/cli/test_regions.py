@@ -102,6 +102,26 @@ def test_every_polygon_is_measured_as_it_would_be_alone(acutance, folder, tmp_pa
     assert both["rejected"] == []
 
 
+def test_the_name_of_a_region_is_in_its_page_and_its_document(acutance, folder, tmp_path):
+    write_polygons(tmp_path / "one.geojson", {"field A/1": PLACES["field A/1"]})
+    page = tmp_path / "edge.html"
+    words = ("--json", "--report", page)
+    alone = json.loads(measured(acutance, folder, *words, roi=tmp_path / "one.geojson").stdout)
+    assert alone["region"] == alone["image"]["region"] == "field A/1"
+    assert "<title>field A/1: Edge, method spline</title>" in page.read_text()
+    assert "field A/1, rows 50" in page.read_text()
+    several = json.loads(measured(acutance, folder, *words).stdout)
+    assert [one["image"]["region"] for one in several["results"]] == ["north", "field A/1"]
+    assert "<title>north: Edge" in (tmp_path / "edge-north.html").read_text()
+    # A number in the file is no name.
+    unnamed = json.loads((tmp_path / "one.geojson").read_text())
+    unnamed["features"][0]["properties"] = {}
+    (tmp_path / "one.geojson").write_text(json.dumps(unnamed))
+    alone = json.loads(measured(acutance, folder, "--json", roi=tmp_path / "one.geojson").stdout)
+    assert "region" not in alone
+    assert alone["image"]["region"] is None
+
+
 def test_texts_and_files_carry_the_names(acutance, folder, shown, tmp_path):
     result = measured(
         acutance, folder, "--csv", tmp_path / "edge.csv", "--figure", tmp_path / "edge.svg"

@@ -5,9 +5,11 @@ import json
 import numpy as np
 import pytest
 
+import acutance as ac
 from acutance import optics, simulate
 from acutance.archive import Archive
 from acutance.raster import write_geotiff
+from acutance.raster.dataset import open_quietly
 
 SENSORS = [optics.Sensor([optics.Gaussian(size), optics.Detector()]) for size in (0.35, 0.5)]
 
@@ -84,6 +86,70 @@ def test_bands_are_kept_apart_in_an_archive(acutance, image, tmp_path):
     assert acutance("archive", "import", tmp_path / "kept.db", file, "--sensor", "S").exit_code == 0
     with Archive(tmp_path / "kept.db", read_only=True) as archive:
         assert sorted(archive.measurements()["band"]) == ["1", "2"]
+
+
+def test_bands_one_by_one_are_the_bands_of_all(acutance, image, tmp_path):
+    kept = tmp_path / "kept.db"
+    for band in ("1", "2", "all"):
+        file = tmp_path / f"{band}.json"
+        file.write_text(acutance("edge", image, "--band", band, "--json").stdout)
+        assert acutance("archive", "import", kept, file, "--sensor", "S").exit_code == 0
+    one = ac.measure_edge(ac.open_image(image, band=2))
+    with Archive(kept) as archive:
+        assert not archive.add(one, sensor="S").new
+        assert sorted(archive.measurements()["band"]) == ["1", "2"]
+
+
+def test_bands_of_older_documents_are_told_where_they_meet(acutance, image, tmp_path):
+    """Documents that do not say how many bands there are give no number for a name."""
+    for band in ("1", "2"):
+        document = json.loads(acutance("edge", image, "--band", band, "--json").stdout)
+        del document["image"]["band_count"], document["image"]["band_name"]
+        (tmp_path / f"{band}.json").write_text(json.dumps(document))
+    files = [tmp_path / "1.json", tmp_path / "2.json"]
+    told = acutance("archive", "import", tmp_path / "kept.db", *files, "--sensor", "S")
+    assert told.exit_code == 0
+    assert "bands.tif: bands 1 and 2 are kept without a name, and means are of both" in told.stderr
+    told = acutance("archive", "import", tmp_path / "other.db", files[0], "--sensor", "S", "--json")
+    assert told.stderr == ""
+    assert "notes" not in json.loads(told.stdout)
+
+
+@pytest.fixture(scope="module")
+def named(image, tmp_path_factory):
+    """The bands of the image, with names."""
+    place = tmp_path_factory.mktemp("named") / "named.tif"
+    with open_quietly(image) as source, open_quietly(place, "w", **source.profile) as written:
+        written.write(source.read())
+        written.descriptions = ("B2", "B3", "B4")
+    return place
+
+
+def test_bands_are_called_by_their_names(acutance, refused, named, tmp_path):
+    page = tmp_path / "e.html"
+    done = acutance("edge", named, "--band", "b3", "--json", "--report", page)
+    one = json.loads(done.stdout)
+    assert (one["image"]["band"], one["image"]["band_name"]) == (2, "B3")
+    assert "2 (B3)" in page.read_text()
+    done = acutance("edge", named, "--band", "1,B3,3", "--json")
+    document = json.loads(done.stdout)
+    assert [part["band"] for part in document["results"]] == ["1", "2"]
+    assert [part["values"] for part in document["rejected"]] == [{"band": "3", "band_name": "B4"}]
+    assert "acutance: band 3 (B4): " in done.stderr
+    refused(("edge", named, "--band", "red"), "named.tif are B2, B3, B4")
+    for name, text in (("one.json", json.dumps(one)), ("all.json", done.stdout)):
+        (tmp_path / name).write_text(text)
+        acutance("archive", "import", tmp_path / "kept.db", tmp_path / name, "--sensor", "S")
+    with Archive(tmp_path / "kept.db", read_only=True) as archive:
+        assert sorted(archive.measurements()["band"]) == ["B2", "B3"]
+        assert list(archive.rejected()["band"]) == ["B4"]
+
+
+def test_an_image_lists_its_bands(acutance, image, named):
+    assert "3, without names (1 to 3)" in acutance("image", image).stdout
+    assert "1 (B2), 2 (B3), 3 (B4)   (named.tif: " in acutance("image", named).stdout
+    document = json.loads(acutance("image", image, "--json").stdout)
+    assert (document["band_count"], document["shape"]) == (3, [48, 48])
 
 
 def test_other_kinds_take_several_bands(acutance, image):

@@ -136,6 +136,12 @@ def test_a_width_in_metres_is_along_the_normal_where_pixels_are_not_square(acuta
         (("edge", "--sensor", "snow"), "the sensor snow is no"),
         (("pulse", "--width-px", "3", "--width-m", "8"), "give one of them"),
         (("pulse", "--width-m", "8", "--sensor", "gaussian"), "add --gsd"),
+        (
+            ("pulse", "--width-m", "0.09"),
+            "at a GSD of 1 m (that of generic-2005; --gsd is another)",
+        ),
+        (("pulse", "--width-m", "9", "--gsd", "0.03"), "at a GSD of 0.03 m (--gsd) is 300 px"),
+        (("edge", "--gsd", "3cm"), "'3cm' is no number"),
         (("edge", "--csv", "plan.txt"), "has to be .csv"),
         (("edge", "--width-px", "3"), "an edge has no width"),
         (("bars",), "No such command 'bars'"),

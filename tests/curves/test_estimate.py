@@ -20,6 +20,12 @@ def test_prints_two_digits_of_the_standard_deviation() -> None:
 
 def test_a_format_holds_for_value_and_deviation() -> None:
     assert f"{Estimate(0.15112, 0.0032):.3f}" == "0.151 ± 0.003"
+
+
+@pytest.mark.parametrize("spec", [">20", "20", "*^20", "<20", ""])
+def test_a_width_alone_pads_the_usual_text(spec: str) -> None:
+    found = Estimate(0.7209610678478439, 0.0031371295100954687)
+    assert format(found, spec) == format("0.7210 ± 0.0031", spec)
     assert f"{Estimate(0.15112, 0.0032)}" == "0.1511 ± 0.0032"
     assert f"{Estimate(0.25):.2f}" == "0.25"
     assert f"{Estimate(0.25, math.nan):.2f}" == "0.25"

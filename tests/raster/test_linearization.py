@@ -86,6 +86,7 @@ def test_values_beyond_a_table_are_refused(tmp_path):
     ("asked", "words"),
     [
         ("film", "film is none of the known curves"),
+        ("2.2", r"is the number 2\.2 .linearize=2\.2, --gamma 2\.2"),
         ("sRGB:white", "'white' has to be a number above 0"),
         ("log:-1", "'-1' has to be a number"),
         (0.0, "a gamma of 0 was asked for: it has to be 0.1 to 10"),

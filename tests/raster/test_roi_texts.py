@@ -51,6 +51,23 @@ def in_lonlat(ring, image):
     return np.column_stack(image.geolocation.to_lonlat(y, x)).tolist()
 
 
+def test_latitude_first_is_recognised_in_a_box_of_degrees(located):
+    (west, north), _, (east, south), *_ = in_lonlat(SQUARE, located)
+    assert parse_roi(f"lonlat:{west},{south},{east},{north}", located)
+    with pytest.raises(RegionError, match=f"longitude comes first, write lonlat:{west},{south}"):
+        parse_roi(f"lonlat:{south},{west},{north},{east}", located)
+    with pytest.raises(RegionError, match=r"choose one inside it$"):
+        parse_roi("lonlat:1,2,3,4", located)
+
+
+def test_pixels_under_a_declared_crs_are_recognised(located, write_geojson):
+    with pytest.raises(RegionError, match=r'if pixels are meant, write "crs": "pixel" in'):
+        parse_roi(write_geojson(polygon(crs="EPSG:32631")), located)
+    far = [[x + 5000, y] for x, y in in_utm(SQUARE)]
+    with pytest.raises(RegionError, match=r"choose one inside it$"):
+        parse_roi(write_geojson(polygon(far, crs="EPSG:32631")), located)
+
+
 def test_four_numbers_are_whole_pixels(plain):
     for text in ("5,10,10,20", " 5, 10 ,10, 20 ", "5.0,10,10,20."):
         assert parse_roi(text, plain).box(plain.shape) == SQUARE_BOX

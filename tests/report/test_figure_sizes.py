@@ -97,4 +97,8 @@ def test_radii_stand_above_the_dots_of_a_scene():
 
 
 def test_narrow_pages_say_where_they_are_scrolled(measurement):
-    assert "scroll sideways" in page(measurement)
+    shown = page(measurement)
+    assert "scroll sideways" in shown
+    # On a narrow screen sentences keep their room.
+    assert 'class="l long"' in shown
+    assert "td.long { min-width" in shown

@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 
+import pytest
+
 from acutance import optics
 from acutance.report import mirror_plan_text
 from acutance.studies import MirrorPlanOptions, plan_mirrors
@@ -36,6 +38,16 @@ def test_mirrors_too_large_for_a_field_are_told():
     plan = plan_mirrors(MirrorPlanOptions(optics.Sensor(SENSOR.blocks, gsd_m=70.0), draws=0))
     assert "note: caps 62.4 m across" in mirror_plan_text(plan)
     assert "note" not in mirror_plan_text(replace(plan, diameter_m=1.0))
+
+
+@pytest.mark.parametrize(
+    ("gsd_m", "steps"), [(0.01, "0.0125 by 0.102 m"), (0.03, "0.0375 by 0.306 m")]
+)
+def test_lengths_of_a_drone_s_mirrors_have_three_digits(gsd_m, steps):
+    plan = plan_mirrors(MirrorPlanOptions(optics.Sensor(SENSOR.blocks, gsd_m=gsd_m), draws=0))
+    text = mirror_plan_text(plan)
+    assert steps in text
+    assert f"radius of curvature {plan.radius_m:.4f} m" in text
 
 
 def test_a_single_mirror_stands_in_one_column():

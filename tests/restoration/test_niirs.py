@@ -172,7 +172,7 @@ def test_measurements_of_two_directions_are_combined(edges):
     names = [note.name for note in found.notes]
     assert names[:2] == ["invalid measurement", "combination"]
     assert "one direction" not in names
-    assert "doubtful or invalid themselves" not in "".join(note.message for note in found.notes)
+    assert "whose own checks failed" not in "".join(note.message for note in found.notes)
 
 
 @pytest.mark.parametrize(("gsd_m", "own"), [(0.3, 0.7), ((0.7, 0.7), None), (None, None)])

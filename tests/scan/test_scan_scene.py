@@ -150,7 +150,10 @@ def test_documents_tables_and_figures(ideal, tmp_path):
     lines = scene.edges.to_csv().splitlines()
     assert len(lines) == scene.edges.size + 1
     assert lines[0].startswith("row,col,normal_deg")
-    features = scene.edges.to_geojson()["features"]
+    pixels = scene.edges.to_geojson()
+    assert pixels["crs"] == "pixel"
+    assert "crs" not in scene.edges.to_geojson(lambda row, col: (col / 1e4, row / 1e4))
+    features = pixels["features"]
     (x0, y0), (x1, y1) = features[0]["geometry"]["coordinates"]
     assert np.hypot(x1 - x0, y1 - y0) == pytest.approx(scene.edges.length_px[0], rel=1e-6)
     assert "Edges of the scene" in ac.report.text(scene)

@@ -8,6 +8,7 @@ import pytest
 
 from acutance import OptionError, Sensor
 from acutance.optics import Detector, Gaussian
+from acutance.report import plan_text
 from acutance.studies import Execution, PlanOptions, plan_target
 
 ALONE = Execution(seed=3, workers=1)
@@ -111,6 +112,14 @@ def test_an_edge_without_simulation_has_bounds_alone():
     assert set(plan.table.columns["varied"]) == {"plan", "rows", "angle"}
     assert np.all(np.isnan(plan.table["mtf_nyquist_rms"]))
     assert plan.finding("expected_mtf_nyquist").value == pytest.approx(0.0111, abs=1e-4)
+
+
+def test_bounds_are_no_errors_and_the_sensor_is_named():
+    plan = plan_target(PlanOptions(rows=(40,), draws=0, sensor_name="generic-2005"), ALONE)
+    said = plan_text(plan)
+    assert "has the smallest bound" in said
+    assert "chance" not in said
+    assert "sensor generic-2005: MTF at Nyquist 0.267, GSD 1 m" in said
 
 
 def test_the_simulation_can_refuse():

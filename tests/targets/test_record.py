@@ -25,6 +25,14 @@ def with_waste(record, numbers):
     return Record.from_dict({**record.to_dict(), "waste": waste})
 
 
+def test_numbers_of_a_record_are_found_by_direction(record):
+    with pytest.raises(AttributeError, match=r"read \.across\.mtf_nyquist"):
+        _ = record.mtf_nyquist
+    assert not hasattr(record, "colour")
+    with pytest.raises(ac.OptionError, match=r"json\.loads\(text\)"):
+        Record.from_dict("{}")
+
+
 @pytest.mark.parametrize("numbers", [0, 2000])
 def test_a_pickled_record_is_the_record(record, numbers):
     sent = with_waste(record, numbers)

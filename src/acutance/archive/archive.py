@@ -113,10 +113,12 @@ class Archive(Questions, RowsOfRuns):
         acquired : datetime, date or str, optional
             When the image was taken; without a time zone UTC.
         target : str or TargetEntry, optional
+            Without it the name of the measured region, if it has one.
         image : ImageEntry, optional
             What is known of the image, instead of `sensor` and `acquired`.
         band : str, optional
-            The name of the band, "pan".
+            The name of the band, "pan"; without it that of the image, or the number of one of
+            several bands without a name.
         key : str, optional
             What makes it the same as one that is kept; see `acutance.archive.identity`.
         run : int, optional
@@ -145,10 +147,14 @@ class Archive(Questions, RowsOfRuns):
                 acquired=None if acquired is None else as_utc(acquired, "acquired"),
                 gsd_m=record.image.pixel_gsd_m,
             )
+        if target is None:
+            target = record.image.region
         if isinstance(target, str):
             target = TargetEntry(name=target, kind=record.kind)
         if not isinstance(target, TargetEntry | None):
             raise OptionError(f"target is a {type(target).__name__}: give a name or a TargetEntry")
+        if band is None:
+            band = record.image.band_told_apart
         entry = Entry(record=record, image=image, target=target, band=band, key=key)
         kept = add_entry(self._database, entry, run)
         if not kept.new:

@@ -45,7 +45,9 @@ class Measurements(Columns):
     Columns: ``id`` (of the measurement, the same in all its directions), ``sensor``, ``level``,
     ``band``, ``site``, ``target``, ``kind``, ``method``, ``orientation``, ``acquired``, ``image``
     (its file name), ``image_id`` (equal for measurements of one image), ``run``, ``verdict``,
-    ``snr``, ``angle_deg``, ``gsd_m`` (along the direction), ``view_zenith_deg``,
+    ``snr``, ``normal_deg`` (the direction of the numbers, from the column axis towards the row
+    axis, -90 to 90; ``angle_deg`` is the same, as tables were first written), ``gsd_m`` (along the
+    direction), ``view_zenith_deg``,
     ``sun_elevation_deg``, ``measured_at``, and every metric with its standard deviation
     (``mtf_nyquist``, ``mtf_nyquist_std``, ...). Of the three main numbers also what of it does not
     average out over images (``rer_systematic_std``, `acutance.archive.systematic`).
@@ -128,6 +130,7 @@ _MEASURED: tuple[tuple[str, Column[Any]], ...] = (
     ("orientation", directions.c.orientation),
     ("verdict", measurements.c.verdict),
     ("snr", measurements.c.snr),
+    ("normal_deg", directions.c.angle_deg),
     ("angle_deg", directions.c.angle_deg),
     ("gsd_m", directions.c.gsd_m),
     ("measured_at", measurements.c.measured_at),

@@ -197,6 +197,8 @@ def _wrong(error: ValidationError, document: Mapping[str, Any]) -> list[str]:
         if one.kind == "extra_forbidden":
             model = Requirement if one.within else Specification
             said = f"is no key, only {', '.join(model.model_fields)}"
+        elif one.kind == "list_type" and isinstance(one.found, Mapping):
+            said = f"is a single table, and there may be several: write [[{one.place}]]"
         else:
             said = one.message[:1].lower() + one.message[1:]
         found.append(f"{one.place}: {said}")

@@ -7,6 +7,7 @@ import hashlib
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from fnmatch import fnmatch
 from pathlib import Path
 
 from acutance.batch.plan import StatedOfImages, is_plan_file
@@ -138,7 +139,17 @@ def stated_of(path: str, stated: Sequence[StatedOfImages]) -> StatedOfImages:
 
 def _matches(path: str, pattern: str) -> bool:
     """Whether a path is that of a pattern, by its end: "K3_*.tif" matches in every folder."""
-    wanted = Path(pattern)
-    return Path(path).match(str(wanted)) or Path(os.path.realpath(path)).match(
-        str(wanted.absolute())
-    )
+    wanted = [Path(os.path.abspath(pattern)).parts]
+    if not os.path.isabs(pattern):
+        wanted.append(("**", *Path(pattern).parts))
+    ways = [Path(os.path.abspath(path)).parts, Path(os.path.realpath(path)).parts]
+    return any(_parts_match(way, one) for way in ways for one in wanted)
+
+
+def _parts_match(parts: Sequence[str], wanted: Sequence[str]) -> bool:
+    """Whether folders and a name are those of a pattern, in which ** is any number of folders."""
+    if not wanted:
+        return not parts
+    if wanted[0] == "**":
+        return any(_parts_match(parts[start:], wanted[1:]) for start in range(len(parts) + 1))
+    return bool(parts) and fnmatch(parts[0], wanted[0]) and _parts_match(parts[1:], wanted[1:])

@@ -6,7 +6,7 @@ import os
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import date
 from typing import Any
 
@@ -172,6 +172,9 @@ def _opened(task: BatchTask) -> _Opened:
     bands = tuple(
         Band(one.band, statement.band_name(one.band) if names is None else names[place])
         for place, one in enumerate(images)
+    )
+    images = tuple(
+        replace(one, band_name=band.name) for one, band in zip(images, bands, strict=True)
     )
     entry = image_entry(task, statement)
     acquired = None if entry.acquired is None else entry.acquired.date()

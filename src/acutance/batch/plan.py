@@ -279,7 +279,7 @@ def _stated(given: _Stated, folder: Path) -> StatedOfImages:
         if name not in ("images", "band_names", "gsd_m", "metadata")
     }
     return StatedOfImages(
-        images=tuple(_below(folder, one) for one in _texts(given.images or [])),
+        images=tuple(_pattern(folder, one) for one in _texts(given.images or [])),
         band_names=None if given.band_names is None else tuple(given.band_names),
         gsd_m=sides,
         metadata=None if documents is None else tuple(_below(folder, one) for one in documents),
@@ -289,6 +289,13 @@ def _stated(given: _Stated, folder: Path) -> StatedOfImages:
 
 def _texts(value: Texts) -> Sequence[str]:
     return [value] if isinstance(value, str) else value
+
+
+def _pattern(folder: Path, pattern: str) -> str:
+    """A pattern of images: a name alone is one in every folder, others start at the plan."""
+    if Path(pattern).name == pattern:
+        return pattern
+    return os.path.abspath(_below(folder, pattern))
 
 
 def _below(folder: Path, path: str) -> str:

@@ -91,7 +91,7 @@ class _Command(TyperCommand):
     """A command that refuses an option given twice, of which only the last would count."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        _, _, given = self.make_parser(ctx).parse_args(args=list(args))
+        values, _, given = self.make_parser(ctx).parse_args(args=list(args))
         # A shell that completes the words is told nothing.
         for one, times in Counter(() if ctx.resilient_parsing else given).items():
             takes_one = isinstance(one, TyperOption) and not (one.multiple or one.is_flag)
@@ -100,7 +100,18 @@ class _Command(TyperCommand):
                     f"{max(one.opts, key=len)} was given {times} times, and only the last would "
                     "count: give it once"
                 )
-        return super().parse_args(ctx, args)
+        try:
+            return super().parse_args(ctx, args)
+        except typer.BadParameter as error:
+            found = None if error.param is None else values.get(error.param.name)
+            kind = next((words for part, words in _NUMBERS.items() if part in error.message), None)
+            if isinstance(found, str) and kind is not None:
+                error.message = f"{found!r} is {kind}"
+            raise
+
+
+_NUMBERS = {"valid number": "no number", "valid integer": "no whole number"}
+"""What typer says of numbers, without the text that was typed."""
 
 
 def _as_typed(message: str, command: Any) -> str:

@@ -195,9 +195,12 @@ def import_documents(
             )
     if as_json:
         numbers = {"read": done.read, "new": done.new, "refused": dict(done.refused)}
+        numbers |= {"notes": list(done.notes)} if done.notes else {}
         typer.echo(json_text({"schema": "acutance/archive-import/1", **numbers}))
     else:
         typer.echo(f"{done.read} read, {done.new} new, {done.read - done.new} there already")
+    for note in done.notes:
+        say(f"acutance: {note}")
     for name, reason in done.refused.items():
         say(f"acutance: {name}: {reason}")
     if done.refused:

@@ -113,7 +113,9 @@ def _text(found: Trend) -> str:
         signed,
         since_words,
         size_words,
+        unsought_words,
     )
+    from acutance.report.labels import MISSING
     from acutance.report.text import align_columns
 
     rate, relative = found.rate_per_year, found.relative_rate_per_year
@@ -126,7 +128,9 @@ def _text(found: Trend) -> str:
          part_words(found.relative_scatter).strip(" ()")),
         ("season, amplitude", str(found.season_amplitude),
          f"probability of a season {found.season_probability:.2f}"),
-        ("steps", str(len(found.changes)), f"probability of any {found.step_probability:.2f}"),
+        ("steps", *((MISSING, unsought) if (unsought := unsought_words(found)) else
+                    (str(len(found.changes)),
+                     f"probability of any {found.step_probability:.2f}"))),
         *((f"  {change.date}", signed(change.size),
            f"{size_words(change)}, {change.since} to {change.until}, "
            f"probability {change.probability:.2f}") for change in found.changes),

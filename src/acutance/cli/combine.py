@@ -17,9 +17,10 @@ __all__ = ["EXAMPLE", "combine"]
 
 EXAMPLE = (
     "\b\nExamples:\n"
-    "  acutance edge site.tif --roi 20,30,60,50 --json > across.json\n"
-    "  acutance edge site.tif --roi 90,30,50,60 --json > along.json\n"
-    "  acutance points site.tif --roi 10,90,60,60 --json > mirrors.json\n"
+    "  acutance simulate site --out site.tif\n"
+    "  acutance edge site.tif --roi 34,30,33,61 --json > across.json\n"
+    "  acutance edge site.tif --roi 122,31,58,29 --json > along.json\n"
+    "  acutance points site.tif --roi 10,160,120,50 --json > mirrors.json\n"
     "  acutance combine across.json along.json mirrors.json --report sensor.html"
 )
 

@@ -26,8 +26,9 @@ __all__ = ["EXAMPLE", "edge"]
 
 EXAMPLE = (
     "\b\nExamples:\n"
-    "  acutance edge scene.tif --roi 120,340,40,40 --gsd 0.7 --report edge.html\n"
-    "  acutance edge scene.tif --roi 120,340,40,40 --gsd 0.7 --target-softness-m 0.05+-0.02"
+    "  acutance simulate site --out site.tif\n"
+    "  acutance edge site.tif --roi 34,30,33,61 --report edge.html\n"
+    "  acutance edge site.tif --roi 34,30,33,61 --target-softness-m 0.05+-0.02"
 )
 KIND = KINDS["edge"]
 

@@ -11,6 +11,7 @@ import typer
 from acutance.cli.options import ImageArgument, JsonOption
 
 if TYPE_CHECKING:
+    from acutance.raster import Image
     from acutance.raster.metadata import ImageStatement, Stated
 
 __all__ = ["EXAMPLE", "image"]
@@ -25,7 +26,6 @@ _WORDS = {
     "sensor": "sensor",
     "level": "level",
     "acquired": "acquired",
-    "bands": "bands",
     "gsd_m": "GSD [m], row and column",
     "view_zenith_deg": "view zenith [deg]",
     "view_azimuth_deg": "view azimuth [deg]",
@@ -45,29 +45,50 @@ def image(
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Show what an image says of itself: sensor, bands, time, angles, GSD, level, each with its
+    """Show what an image says of itself: bands, sensor, time, angles, GSD, level, each with its
     source.
 
     Read are the documents beside it (DIMAP, IMD, MTL, Sentinel-2 MTD, KOMPSAT, Gaofen,
     PlanetScope, STAC item) and its tags. What none of them says stays empty; what they say
     differently is named.
     """
+    from acutance.raster import open_image
     from acutance.raster.metadata import read_statement
 
-    found = read_statement(image, metadata)
+    found, pixels = read_statement(image, metadata), open_image(image)
     if as_json:
-        document = {"schema": "acutance/image/1", **found.to_dict()}
+        shape = {"band_count": pixels.band_count, "shape": list(pixels.shape),
+                 "dtype": pixels.dtype}  # fmt: skip
+        document = {"schema": "acutance/image/1", **found.to_dict(), **shape}
         typer.echo(json.dumps(document, indent=2, ensure_ascii=False))
     else:
-        typer.echo(_text(found))
+        typer.echo(_text(found, pixels))
 
 
-def _text(found: ImageStatement) -> str:
-    width = max(map(len, _WORDS.values()))
-    lines = [f"{words:<{width}}  {_shown(getattr(found, name))}" for name, words in _WORDS.items()]
+def _text(found: ImageStatement, pixels: Image) -> str:
+    rows, cols = pixels.shape
+    values = {
+        "bands": _bands(found, pixels.band_count),
+        "pixels": f"{rows} rows, {cols} columns, {pixels.dtype}",
+        **{words: _shown(getattr(found, name)) for name, words in _WORDS.items()},
+    }
+    width = max(map(len, values))
+    lines = [f"{words:<{width}}  {value}" for words, value in values.items()]
     lines += [f"contradiction: {one}" for one in found.conflicts]
     lines += [f"note: {one}" for one in found.notes]
     return "\n".join(lines)
+
+
+def _bands(found: ImageStatement, count: int) -> str:
+    """Numbers and names of the bands."""
+    from acutance.raster.band_label import label_band
+
+    if found.bands is None:
+        return "1, without a name" if count == 1 else f"{count}, without names (1 to {count})"
+    named = ", ".join(
+        label_band(number, name) for number, name in enumerate(found.bands.value, start=1)
+    )
+    return f"{named}   ({found.bands.source})"
 
 
 def _shown(stated: Stated[Any] | None) -> str:

@@ -80,7 +80,7 @@ def measure_target(
         return Shown(function(method=names[0]) if len(names) == 1 else _compared(function, names))
 
     if len(parts) == 1 and not pixels.are_several:
-        outputs.deliver(measure(parts[0]))
+        outputs.deliver(measure(parts[0]), parts[0].document)
     else:
         _deliver_parts(outputs, parts, measure, kept)
 
@@ -108,7 +108,7 @@ class _Part:
     @property
     def label(self) -> str:
         """What it is called in messages."""
-        band = [f"band {self.image.band}"] if self.is_of_bands else []
+        band = [f"band {self.image.band_label}"] if self.is_of_bands else []
         return ", ".join([*band, *([f"region {self.name}"] if self.name else [])])
 
     @property
@@ -122,7 +122,15 @@ class _Part:
     def document(self) -> dict[str, Any]:
         """What its document is marked with."""
         band = {"band": str(self.image.band)} if self.is_of_bands else {}
-        return band | ({"region": self.name} if self.name else {})
+        if self.is_of_bands and self.image.band_name is not None:
+            band["band_name"] = self.image.band_name
+        return band | ({"region": self.region_name} if self.region_name else {})
+
+    @property
+    def region_name(self) -> str:
+        """The name of the region, also of the only one where it has one."""
+        own = "" if self.region is None or isinstance(self.region, str) else self.region.name
+        return self.name or own
 
 
 def _compared(function: Callable[..., Measurement], names: Sequence[str]) -> Comparison:

@@ -8,7 +8,13 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
-from acutance.cli.choices import numbers_of, parse_band, parse_limits, parse_share, parse_stated
+from acutance.cli.choices import (
+    numbers_of,
+    parse_limits,
+    parse_share,
+    parse_stated,
+)
+from acutance.cli.named_bands import numbers_of_bands, parse_bands
 from acutance.cli.terminal import say
 from acutance.errors import OptionError, RegionError
 from acutance.targets.kinds import KINDS, methods_text
@@ -112,8 +118,9 @@ class PixelOptions:
     band: Annotated[
         str,
         typer.Option(
-            metavar="N,...|all",
-            help="Which band, from 1. Of several, 1,2,3 or all, each is measured by itself.",
+            metavar="BAND,...|all",
+            help="Which band: its number, from 1, or its name (acutance image lists them). Of "
+            "several, 1,2,3 or all, each is measured by itself.",
         ),
     ] = "1"
     nodata: Annotated[
@@ -145,9 +152,9 @@ class PixelOptions:
     ] = None
 
     @property
-    def bands(self) -> Sequence[int] | None:
-        """The numbers of the bands; None for all of them."""
-        return None if self.band == "all" else [parse_band(one) for one in self.band.split(",")]
+    def bands(self) -> Sequence[int | str] | None:
+        """Numbers or names of the bands; None for all of them."""
+        return None if self.band == "all" else parse_bands(self.band)
 
     @property
     def are_several(self) -> bool:
@@ -183,7 +190,8 @@ class PixelOptions:
 
         place = None if self.site is None else find_site(self.site)
         images = open_bands(
-            path, bands, gsd_m, self.nodata, along_track=_AXES[self.along_track],
+            path, None if bands is None else numbers_of_bands(path, bands), gsd_m, self.nodata,
+            along_track=_AXES[self.along_track],
             linearize=self.linearize if self.gamma is None else self.gamma,
         )  # fmt: skip
         if place is not None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
@@ -109,7 +110,8 @@ def plan_pulse(
         ),
     ] = None,
     width_m: Annotated[
-        str | None, typer.Option(metavar="M,...", help="The same in metres; needs a GSD.")
+        str | None,
+        typer.Option(metavar="M,...", help="The same in metres, at --gsd or the sensor's own GSD."),
     ] = None,
     design: DesignOptions,
 ) -> None:
@@ -134,12 +136,12 @@ def _plan(
     table = check_optional("--csv", design.csv, (".csv",), keep=kept)
     drawing = check_optional("--figure", design.figure, (".png", ".svg", ".pdf"), keep=kept)
     system = named_sensor(design.sensor, design.gsd)
-    angles_deg = _numbers("--angle", design.angle)
     options = PlanOptions(
         target=target, sensor=system, snr=_snr(design.snr, design.contrast, design.noise),
         rows=_whole_numbers("--rows", design.rows),
-        angles_deg=angles_deg, widths_px=_widths(width_px, width_m, system, angles_deg[0]),
-        draws=design.draws, accuracy=design.accuracy,
+        angles_deg=_numbers("--angle", design.angle),
+        widths_px=_widths(width_px, width_m, system, design), draws=design.draws,
+        accuracy=design.accuracy, sensor_name=Path(design.sensor).stem,
     )  # fmt: skip
     with progress_bar(f"plan {target}") as progress:
         result: Any = plan_target(
@@ -163,17 +165,27 @@ def _snr(snr: float | None, contrast: float | None, noise: float | None) -> floa
 
 
 def _widths(
-    width_px: str | None, width_m: str | None, sensor: Sensor, angle_deg: float
+    width_px: str | None, width_m: str | None, sensor: Sensor, design: DesignOptions
 ) -> tuple[float, ...]:
     """Widths in pixels along the normal of the planned angle, whose GSD they are divided by."""
     if width_px is not None and width_m is not None:
         raise OptionError("--width-px and --width-m were both given: give one of them")
+    from acutance.studies.plan import MAX_WIDTH_PX, MIN_WIDTH_PX
+
     if width_m is None:
         return _numbers("--width-px", width_px or "3")
-    gsd_m = sensor.gsd_along_normal_m(angle_deg)
+    gsd_m = sensor.gsd_along_normal_m(_numbers("--angle", design.angle)[0])
     if gsd_m is None:
         raise OptionError(f"--width-m {width_m} needs the ground sampling distance: add --gsd")
-    return tuple(width / gsd_m for width in _numbers("--width-m", width_m))
+    widths_px = tuple(width / gsd_m for width in _numbers("--width-m", width_m))
+    if not all(MIN_WIDTH_PX <= width <= MAX_WIDTH_PX for width in widths_px):
+        whose = f"that of {design.sensor}; --gsd is another" if design.gsd is None else "--gsd"
+        found = ", ".join(f"{width:.4g}" for width in widths_px)
+        raise OptionError(
+            f"--width-m {width_m} at a GSD of {gsd_m:.4g} m ({whose}) is {found} px: a pulse "
+            f"is {MIN_WIDTH_PX:g} to {MAX_WIDTH_PX:g} px wide, 3 is best"
+        )
+    return widths_px
 
 
 def _numbers(option: str, text: str) -> tuple[float, ...]:

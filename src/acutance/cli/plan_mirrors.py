@@ -83,7 +83,8 @@ def plan_mirrors(
     seed: Annotated[int, typer.Option(metavar="N", min=0, help="Of the random numbers.")] = 2005,
     workers: WorkersOption = None,
     csv: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Write the mirrors' places: .csv.")
+        str | None,
+        typer.Option(metavar="FILE", help="Write the mirrors' places, from the first one: .csv."),
     ] = None,
     figure: Annotated[
         str | None, typer.Option(metavar="FILE", help="Draw the layout: .png, .svg or .pdf.")

@@ -26,9 +26,10 @@ if TYPE_CHECKING:
 __all__ = ["EXAMPLE", "points"]
 
 EXAMPLE = (
-    "\b\nExample:\n"
-    "  acutance points mirrors.tif --positions mirrors.csv --surveyed mirrors.csv --gsd 0.7 "
-    "--report mirrors.html"
+    "\b\nExamples:\n"
+    "  acutance simulate points --peak 1500 --snr 80 --out mirrors.tif\n"
+    "  acutance points mirrors.tif --report mirrors.html\n"
+    "  acutance points field.tif --positions places.csv --surveyed survey.csv --gsd 0.7"
 )
 KIND = KINDS["points"]
 

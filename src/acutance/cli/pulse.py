@@ -29,8 +29,9 @@ if TYPE_CHECKING:
 __all__ = ["EXAMPLE", "pulse"]
 
 EXAMPLE = (
-    "\b\nExample:\n"
-    "  acutance pulse scene.tif --roi 80,210,60,40 --width-m 8.83 --gsd 2.8 --report pulse.html"
+    "\b\nExamples:\n"
+    "  acutance simulate site --out site.tif\n"
+    "  acutance pulse site.tif --roi 122,93,57,36 --width-m 3 --report pulse.html"
 )
 KIND = KINDS["pulse"]
 

@@ -115,13 +115,16 @@ class Outputs:
             for stem in stems
         ]
 
-    def deliver(self, shown: Shown) -> None:
-        """Write and print one result; under ``--strict`` a failed check is exit code 3."""
+    def deliver(self, shown: Shown, marks: Mapping[str, Any] | None = None) -> None:
+        """Write and print one result; under ``--strict`` a failed check is exit code 3.
+
+        The document is marked with what it is of: its region.
+        """
         from acutance import report
 
         self.write_files(shown)
         if self.as_json:
-            typer.echo(report.json_text(self.document(shown)))
+            typer.echo(report.json_text({**(marks or {}), **self.document(shown)}))
         else:
             typer.echo(report.text(shown.result, required=self.required))
         self.require_checks([shown])

@@ -179,9 +179,10 @@ for _name, _command in (
     ("checkerboard", simulate_site.checkerboard),
 ):
     _example = (scenes.EXAMPLES | simulate_site.SITE_EXAMPLES)[_name]
-    app.command(_name, epilog=f"\b\nExample:\n{_example}")(_command)
+    _title = "Examples" if "\n" in _example else "Example"
+    app.command(_name, epilog=f"\b\n{_title}:\n{_example}")(_command)
 app.command("pair", epilog=f"\b\nExample:\n{simulate_pair.PAIR_EXAMPLE}")(simulate_pair.pair)
-app.command("landscape", epilog=f"\b\nExample:\n{simulate_landscape.LANDSCAPE_EXAMPLE}")(
+app.command("landscape", epilog=f"\b\nExamples:\n{simulate_landscape.LANDSCAPE_EXAMPLE}")(
     simulate_landscape.landscape
 )
 app.command("sensor-budget", epilog=BUDGET_EXAMPLE)(sensor_budget)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -15,6 +16,8 @@ from acutance.errors import OptionError
 __all__ = ["Estimate", "normal_quantile"]
 
 _MAX_DIGITS = 6
+_ONLY_WIDTH = re.compile(r"(.?[<>^])?\d*")
+"""Formats that say where a text stands, and nothing of its digits."""
 _STANDARD_NORMAL = NormalDist()
 
 
@@ -209,9 +212,9 @@ class Estimate:
         return Estimate(slope * self.value + offset, abs(slope) * self.std, *bounds)
 
     def __format__(self, spec: str) -> str:
-        """Value and standard deviation, both by `spec`; without one as `str` does."""
-        if not spec:
-            return str(self)
+        """Value and standard deviation, both by `spec`; as `str` does where it has no digits."""
+        if _ONLY_WIDTH.fullmatch(spec):
+            return format(str(self), spec)
         if not math.isfinite(self.value):
             return "undefined"
         if not (self.std > 0 and math.isfinite(self.std)):

@@ -11,7 +11,7 @@ from acutance.errors import RegionError
 from acutance.raster.geolocation import LONLAT_CRS
 from acutance.raster.image import Image
 
-__all__ = ["PIXELS", "crs_without_declaration", "to_pixels"]
+__all__ = ["PIXELS", "crs_without_declaration", "lies_in_image", "to_pixels"]
 
 PIXELS = "pixel"
 """The "crs" of coordinates in pixels: x the column, y the row, an integer being a centre."""
@@ -80,7 +80,7 @@ def crs_without_declaration(parts: Sequence[Floats], image: Image, name: str) ->
     if image.geolocation is None:
         return PIXELS
     possible = all(_are_degrees(part) for part in parts)
-    if possible and _in_image(parts, LONLAT_CRS, image):
+    if possible and lies_in_image(parts, LONLAT_CRS, image):
         return LONLAT_CRS
     x, y = parts[0][0]
     found = f'{name} has no "crs" member, and its first corner {x:.9g}, {y:.9g}'
@@ -90,17 +90,17 @@ def crs_without_declaration(parts: Sequence[Floats], image: Image, name: str) ->
         else "is no longitude and latitude"
     )
     swapped = [part[:, ::-1] for part in parts]
-    if all(map(_are_degrees, swapped)) and _in_image(swapped, LONLAT_CRS, image):
+    if all(map(_are_degrees, swapped)) and lies_in_image(swapped, LONLAT_CRS, image):
         raise RegionError(
             f"{found} {as_degrees} but inside when latitude is read first: longitude comes first, "
             f"write [{y:.9g}, {x:.9g}]"
         )
-    if _in_image(parts, PIXELS, image):
+    if lies_in_image(parts, PIXELS, image):
         raise RegionError(
             f"{found} {as_degrees} but inside when read as pixels (column, row): add "
             '"crs": "pixel" to the file if pixels are meant, "crs": "OGC:CRS84" if degrees are'
         )
-    if _in_image(parts, image.geolocation.crs, image):
+    if lies_in_image(parts, image.geolocation.crs, image):
         raise RegionError(
             f"{found} {as_degrees} but inside when read in the image's own CRS: add "
             f'"crs": "{image.geolocation.crs}" to the file'
@@ -118,8 +118,15 @@ def _are_degrees(points: Floats) -> bool:
     return bool((x <= 180.0).all() and (y <= 90.0).all())
 
 
-def _in_image(parts: Sequence[Floats], crs: str, image: Image) -> bool:
-    """Whether the rectangle around any of the parts touches the image."""
+def lies_in_image(parts: Sequence[Floats], crs: str, image: Image) -> bool:
+    """Whether the rectangle around any of the parts touches the image.
+
+    Parameters
+    ----------
+    parts : sequence of (n, 2) arrays
+    crs : str
+    image : Image
+    """
     size = np.array(image.shape)
     for part in parts:
         try:

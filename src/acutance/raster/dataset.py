@@ -45,6 +45,9 @@ CACHE_BYTES = 32 * 2**20
 _PACKED_TRIED, _PACKED_NAMED = 20, 5
 """Largest files of a packed file that are opened to find images, and images that are named."""
 
+_DOCUMENTS = (".xml", ".imd", ".dim", ".json", ".txt")
+"""Endings of what vendors write beside images."""
+
 _WARNING_FILTERS = threading.Lock()
 
 
@@ -171,6 +174,11 @@ def read_in_our_words(path: str) -> Iterator[None]:
 def _advice(path: str) -> str:
     if Path(path).is_dir():
         return "it is a directory; give the image file inside it"
+    if Path(path).suffix.lower() in _DOCUMENTS:
+        return (
+            "it seems to be a document of metadata: give the image that it is of; acutance image "
+            "IMAGE --metadata FILE reads both"
+        )
     packed = packed_names(path) if Path(path).is_file() else None
     if packed is not None:
         return _packed_advice(packed)

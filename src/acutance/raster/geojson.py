@@ -37,7 +37,7 @@ def load_geojson(name: str) -> dict[str, Any]:
         ) from error
     except (ValueError, RecursionError) as error:
         raise RegionError(
-            f"{name} cannot be read as GeoJSON ({error}): write a file of Polygons or Points"
+            f"{name} cannot be read as GeoJSON ({error}): give a file of GeoJSON"
         ) from error
     if not isinstance(document, dict):
         raise RegionError(
@@ -106,7 +106,7 @@ def polygons(document: dict[str, Any], name: str) -> dict[str, list[Floats] | st
     if len(others) == len(found):
         drawn = next((one for one in others if one != _NOTHING), None)
         raise RegionError(
-            f"{name} holds no polygon: draw the target as one Polygon"
+            f"{name} holds no polygon: draw every target as a Polygon"
             if drawn is None
             else f"{name} holds {drawn}"
         )

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ImageError, OptionError
+from acutance.raster.band_label import label_band
 from acutance.raster.geolocation import Geolocation
 from acutance.raster.gsd import Gsd
 from acutance.raster.linearization import (
@@ -78,6 +79,8 @@ class Image(ShortRepr):
         The GSD declared by the file, also where the caller gave another.
     every_value_is_data : bool
         If true, fill that is not declared is not looked for: see `acutance.raster.Fill`.
+    band_name : str or None
+        As the file or a document beside it states it.
     """
 
     path: str | None
@@ -93,6 +96,7 @@ class Image(ShortRepr):
     characteristic: Characteristic | None = None
     declared_gsd: Gsd | None = None
     every_value_is_data: bool = False
+    band_name: str | None = None
 
     def __post_init__(self) -> None:
         if self.along_track not in ("x", "y"):
@@ -183,6 +187,11 @@ class Image(ShortRepr):
             saturation_level=None if level is None else _linear_level(curve, level),
             characteristic=curve,
         )
+
+    @property
+    def band_label(self) -> str:
+        """Number and name of the band: "2 (B3)"."""
+        return label_band(self.band, self.band_name)
 
     @property
     def crs(self) -> str | None:

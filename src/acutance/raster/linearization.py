@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import csv
 import math
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
@@ -297,6 +298,11 @@ def _rows(path: str) -> Floats:
     try:
         text = Path(path).read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
+        if re.fullmatch(r"\d*\.?\d+", path):
+            raise OptionError(
+                f"the curve {path!r} is a text: a power law is the number {path} "
+                f"(linearize={path}, --gamma {path})"
+            ) from error
         raise OptionError(
             f"{path} is none of the known curves (sRGB, log:DECADE) and cannot be read as a table: "
             "give the path of a text file with two columns, stored value and light"

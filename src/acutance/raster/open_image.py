@@ -26,7 +26,7 @@ from acutance.raster.pixels import (
     type_name,
 )
 
-__all__ = ["open_bands", "open_image"]
+__all__ = ["open_bands", "open_image", "open_unnamed"]
 
 # Names that GDAL understands and the file system does not: "/vsizip/a.zip/b.tif",
 # "https://host/a.tif", "HDF5:a.h5://band". One letter and a colon is a Windows drive.
@@ -75,6 +75,25 @@ def open_image(
     OptionError
         If the GSD is not a positive number, the nodata value no number, or there is no such curve.
     """
+    (found,) = _named([open_unnamed(path, band, gsd_m, nodata, along_track, linearize)])
+    return found
+
+
+def open_unnamed(
+    path: str | os.PathLike[str],
+    band: int = 1,
+    gsd_m: float | Gsd | None = None,
+    nodata: float | None = None,
+    along_track: AlongTrack = "y",
+    linearize: LinearizeLike = None,
+) -> Image:
+    """The image of `open_image` without the name of its band, for which documents are read.
+
+    Parameters
+    ----------
+    path, band, gsd_m, nodata, along_track, linearize : optional
+        As of `open_image`.
+    """
     gsd = Gsd.given(gsd_m)
     require_nodata(nodata)
     name = _as_name(path)
@@ -115,12 +134,21 @@ def open_bands(
     OptionError
         If no band is asked for, or one twice.
     """
-    numbers = _all_bands(open_image(path)) if bands is None else list(bands)
+    numbers = _all_bands(open_unnamed(path)) if bands is None else list(bands)
     if not numbers:
         raise OptionError("no band is asked for: give numbers, from 1, or leave bands out for all")
     if len(set(numbers)) < len(numbers):
         raise OptionError(f"bands are {numbers}: give the number of every band once")
-    return tuple(open_image(path, one, gsd_m, nodata, along_track, linearize) for one in numbers)
+    found = [open_unnamed(path, one, gsd_m, nodata, along_track, linearize) for one in numbers]
+    return tuple(_named(found))
+
+
+def _named(images: Sequence[Image]) -> list[Image]:
+    """Bands of one file with their names, as the file or the documents beside it state them."""
+    from acutance.raster.metadata.read_statement import band_names
+
+    names = band_names(images[0])
+    return [replace(one, band_name=names[one.band - 1] if names else None) for one in images]
 
 
 def _all_bands(first: Image) -> list[int]:

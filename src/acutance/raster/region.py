@@ -134,6 +134,8 @@ class Region(ShortRepr):
         Outlines of what is left out, in the same coordinates.
     margin_px : float, optional
         Pixels no farther than this from the outline, or from that of a hole, belong to it, too.
+    name : str, optional
+        What it is called, as a file of regions names it.
 
     Raises
     ------
@@ -146,6 +148,7 @@ class Region(ShortRepr):
     vertices: Floats
     holes: tuple[Floats, ...] = ()
     margin_px: float = 0.0
+    name: str = ""
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.margin_px < np.inf:

@@ -8,7 +8,12 @@ from pathlib import Path
 import numpy as np
 
 from acutance.errors import RegionError
-from acutance.raster.coordinates import PIXELS, crs_without_declaration, to_pixels
+from acutance.raster.coordinates import (
+    PIXELS,
+    crs_without_declaration,
+    lies_in_image,
+    to_pixels,
+)
 from acutance.raster.geojson import declared_crs, load_geojson, polygons
 from acutance.raster.geolocation import LONLAT_CRS
 from acutance.raster.image import Image
@@ -18,6 +23,8 @@ __all__ = ["parse_features", "parse_roi", "parse_rois"]
 
 _RECTANGLE = re.compile(r"^\s*-?\d+(\.0*)?\s*(,\s*-?\d+(\.0*)?\s*){3}$")
 _NUMBERS = re.compile(r"^[\d\s.,+-]+$")
+_NUMBERED = re.compile(r"^(polygon|feature \d+)?( ?(geometry|part) \d+)*$")
+"""What the only region of a file is called that was given no name: nothing."""
 _FORMS = (
     "write ROW,COL,HEIGHT,WIDTH (pixels), lonlat:WEST,SOUTH,EAST,NORTH (degrees) "
     "or the path of a GeoJSON file"
@@ -110,7 +117,17 @@ def parse_features(text: str, image: Image) -> dict[str, Region | str]:
         return {text.strip(): Region.from_box(box)}
     if text.startswith("lonlat:"):
         region = _lonlat_region(text.removeprefix("lonlat:"), image)
-        region.box(image.shape)
+        try:
+            region.box(image.shape)
+        except RegionError as error:
+            west, south, east, north = text.removeprefix("lonlat:").split(",")
+            swapped = f"{south},{west},{north},{east}"
+            if not _is_inside(swapped, image):
+                raise
+            raise RegionError(
+                f"{error}. It lies inside when latitude is read first: longitude comes first, "
+                f"write lonlat:{swapped}"
+            ) from None
         return {text.strip(): region}
     if not Path(text).is_file():
         found = (
@@ -120,6 +137,15 @@ def parse_features(text: str, image: Image) -> dict[str, Region | str]:
         )
         raise RegionError(f"the region {text!r} is {found}: {_FORMS}")
     return _geojson_regions(text, image)
+
+
+def _is_inside(text: str, image: Image) -> bool:
+    """Whether a box of longitudes and latitudes holds pixels of an image."""
+    try:
+        _lonlat_region(text, image).box(image.shape)
+    except RegionError:
+        return False
+    return True
 
 
 def _lonlat_region(text: str, image: Image) -> Region:
@@ -155,7 +181,8 @@ def _geojson_regions(name: str, image: Image) -> dict[str, Region | str]:
         of_which = f"{label}: " if len(drawn) > 1 else ""
         try:
             outline, *holes = (to_pixels(ring, meant, image) for ring in rings)
-            region = regions[label] = Region(outline, tuple(holes))
+            name_of_it = "" if len(found) == 1 and _NUMBERED.match(label) else label
+            region = regions[label] = Region(outline, tuple(holes), name=name_of_it)
         except RegionError as error:
             raise RegionError(f"{of_which}{error}{reading}") from None
         try:
@@ -163,5 +190,12 @@ def _geojson_regions(name: str, image: Image) -> dict[str, Region | str]:
         except RegionError as error:
             outside[label] = RegionError(f"{of_which}{error}{reading}")
     if len(outside) == len(drawn):
-        raise next(iter(outside.values()))
+        first = next(iter(outside.values()))
+        outlines = [rings[0] for rings in drawn]
+        if meant != PIXELS and lies_in_image(outlines, PIXELS, image):
+            raise RegionError(
+                f"{first}. Read as pixels (column, row) it lies inside: if pixels are meant, write "
+                f'"crs": "pixel" in {name}'
+            )
+        raise first
     return regions

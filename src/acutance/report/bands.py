@@ -48,7 +48,7 @@ def _numbers_table(found: BandScenes) -> Table:
             if scene.verdict.warns:
                 alerts.add(len(rows))
             rows.append((
-                name if first else "", direction,
+                found.label(name) if first else "", direction,
                 *(word_estimate(getattr(response, one)).value_and_std for one in _NUMBERS),
                 str(int(scene.edges.used.sum())) if first else "",
                 f"{100 * scene.objects['ideal'].value:.0f}" if first else "",
@@ -64,14 +64,15 @@ def _numbers_table(found: BandScenes) -> Table:
 def _shifts_table(found: BandScenes) -> Table:
     rows = tuple(
         (
-            name, word_estimate(one.row_px).value_and_std, word_estimate(one.col_px).value_and_std,
+            found.label(name), word_estimate(one.row_px).value_and_std,
+            word_estimate(one.col_px).value_and_std,
             f"{one.scatter_px:.3f}", str(one.edges),
         )
         for name, one in found.shifts.items()
     )  # fmt: skip
     return Table(
         ("Band", "Rows [px]", "Columns [px]", "Scatter [px]", "Edges"), rows, "lrrrr",
-        title=f"Shifts relative to band {found.first}",
+        title=f"Shifts relative to band {found.label(found.first)}",
         notes=(
             "Place of the ground in a band minus its place in the first. Scatter: by how much "
             "single edges differ in excess of their deviations.",
@@ -90,11 +91,14 @@ def bands_text(found: BandScenes, *, required: Required = ()) -> str:
     """
     first = found.scenes[found.first]
     lines = [
-        f"band {name}: {scene.verdict.word}: {scene.verdict.sentence}"
+        f"band {found.label(name)}: {scene.verdict.word}: {scene.verdict.sentence}"
         for name, scene in found.scenes.items()
     ]
-    lines += [f"band {one.values['band']}: not measured: {one.reason}" for one in found.rejected]
-    lines += [f"band {one.values['band']}: no shift: {one.reason}" for one in found.unshifted]
+    lines += [
+        f"band {found.label(one.values['band'])}: {what}: {one.reason}"
+        for what, several in (("not measured", found.rejected), ("no shift", found.unshifted))
+        for one in several
+    ]
     image = describe_image(first, without=("band",))
     return "\n\n".join((
         f"scene in {_counted(found)}\n  {image}",
@@ -115,7 +119,7 @@ def _required_of_bands(found: BandScenes, required: Required) -> list[str]:
     return [
         lines
         for name, scene in found.scenes.items()
-        for lines in required_lines(scene, required, f"Band {name}: required")
+        for lines in required_lines(scene, required, f"Band {found.label(name)}: required")
     ]
 
 
@@ -173,28 +177,32 @@ def bands_page(
         By band a quick look at what was scanned.
     """
     shown = backdrops or {}
-    names = tuple(f"band {name}" for name in found.scenes)
+    names = tuple(f"band {found.label(name)}" for name in found.scenes)
     curves = Plate.of_figure(
         comparison_figure(Comparison(found.measurements, names=names), on_page=True),
         "MTFs, their differences and the differences of the ESFs",
-        f"Filled areas are 95 % intervals. Differences are taken to band {found.first}.",
+        f"Filled areas are 95 % intervals. Differences are taken to band "
+        f"{found.label(found.first)}.",
         wide=True,
     )
     verdicts = [
-        verdict_of(scene, f"Band {name} – ") for name, scene in found.scenes.items()
+        verdict_of(scene, f"Band {found.label(name)} – ") for name, scene in found.scenes.items()
     ] + [
-        Verdict("invalid", f"Band {one.values['band']} – Not measured: {one.reason}")
+        Verdict("invalid", f"Band {found.label(one.values['band'])} – Not measured: {one.reason}")
         for one in found.rejected
     ] + [
-        Verdict("usable", f"Band {one.values['band']} – No shift: {one.reason}")
+        Verdict("usable", f"Band {found.label(one.values['band'])} – No shift: {one.reason}")
         for one in found.unshifted
     ] + [
         answer
         for name, scene in found.scenes.items()
-        for answer in required_verdicts(scene, required, f"Band {name} – ")
+        for answer in required_verdicts(scene, required, f"Band {found.label(name)} – ")
     ]  # fmt: skip
     each = [
-        replace(section, title=f"Band {name}: {section.title[:1].lower()}{section.title[1:]}")
+        replace(
+            section,
+            title=f"Band {found.label(name)}: {section.title[:1].lower()}{section.title[1:]}",
+        )
         for name, scene in found.scenes.items()
         for section in sections(scene, backdrop=shown.get(name))
     ]

@@ -251,8 +251,10 @@ def provenance(result: Measurement | Record, max_name: int | None = None) -> dic
     unnamed = "array in memory" if has_pixels else "several images"
     found = {"image": shorten_name(image.path or unnamed, max_name)}
     if has_pixels:
-        found["band"] = str(image.band)
-        found["region"] = f"rows {row}–{row + height - 1}, columns {col}–{col + width - 1}"
+        found["band"] = image.band_label
+        named = f"{image.region}, " if image.region else ""
+        place = f"rows {row}–{row + height - 1}, columns {col}–{col + width - 1}"
+        found["region"] = f"{named}{place}"
     if image.pixel_gsd_m is not None:
         found["GSD"] = _gsd_words(image.pixel_gsd_m, image.along_track)
         if image.file_gsd_m is not None:

@@ -70,20 +70,28 @@ def page(
     if isinstance(result, Record):
         boxes = (verdict_of(result), *required_verdicts(result, required))
         content = recorded_sections(result, boxes, command)
-        return render_page(title_of(result), "", content, provenance(result))
+        return render_page(_titled(title_of(result), result), "", content, provenance(result))
     found = as_result(result)
     content = sections(found, command=command, required=required, backdrop=backdrop, origin=origin)
     if isinstance(found, TargetResult):
         count = count_edges(len(found.measurements))
         first = found.measurements[0]
         rejected = f"{len(found.rejected)} rejected" if found.rejected else ""
-        return render_page(f"{count} of one target", rejected, content, provenance(first))
+        title = _titled(f"{count} of one target", first)
+        return render_page(title, rejected, content, provenance(first))
     if isinstance(found, Comparison):
         first = found.measurements[0]
         kind = title_of(first).split(",")[0]
         named = f"{kind} by {', '.join(found.labels)}{', with the truth' if found.truth else ''}"
-        return render_page("Methods compared", named, content, provenance(first))
-    return render_page(title_of(found), describe_target(found), content, provenance(found))
+        title = _titled("Methods compared", first)
+        return render_page(title, named, content, provenance(first))
+    title = _titled(title_of(found), found)
+    return render_page(title, describe_target(found), content, provenance(found))
+
+
+def _titled(title: str, result: Measurement | Record) -> str:
+    """A title with the name of the region, where it has one."""
+    return f"{result.image.region}: {title}" if result.image.region else title
 
 
 def rejection_page(what: str, reason: str, *, command: str | None = None) -> str:

@@ -118,7 +118,7 @@ def _target_text(result: TargetResult[Any], required: Required) -> str:
     head = f"{count_edges(len(measurements))} measured, {len(result.rejected)} rejected"
     where = f"\n  {describe_image(measurements[0])}" if measurements else ""
     failed = [
-        f"  {name}, edges {edges}: {meaning}"
+        f"  {name}, {'edges' if '), ' in edges else 'edge'} {edges}: {meaning}"
         for name, edges, meaning in failed_by_check(measurements)
     ]
     return "\n\n".join(

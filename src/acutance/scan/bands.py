@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import FewEdgesError, ImageError, NoEdgeError
 from acutance.raster import Gsd, Image, open_bands
+from acutance.raster.band_label import label_band
 from acutance.scan.all_windows import Progress, part_of, scan_windows
 from acutance.scan.band_shift import BandShift, band_shift
 from acutance.scan.edge_table import EdgeTable
@@ -38,17 +39,24 @@ class BandEdges(EdgeTable):
     Parameters
     ----------
     by_band : mapping of str to SceneEdges
+    names : mapping of str to (str or None)
+        Of the bands, where they are known.
     """
 
     by_band: Mapping[str, SceneEdges]
+    names: Mapping[str, str | None] = field(default_factory=dict)
 
     def columns(self) -> dict[str, NDArray[Any]]:
-        """All arrays by name; the first is the band."""
+        """All arrays by name; the first is the band, by its number, then its name if it has one."""
         each = {name: one.columns() for name, one in self.by_band.items()}
-        bands = np.repeat(np.array(list(each)), [one.size for one in self.by_band.values()])
+        sizes = [one.size for one in self.by_band.values()]
+        bands = {"band": np.repeat(np.array(list(each)), sizes)}
+        if any(self.names.values()):
+            own = [self.names.get(name) or name for name in each]
+            bands["band_name"] = np.repeat(np.array(own), sizes)
         names = next(iter(each.values()))
         joined = {name: np.concatenate([own[name] for own in each.values()]) for name in names}
-        return {"band": bands, **joined}
+        return {**bands, **joined}
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +87,14 @@ class BandScenes(ShortRepr):
         """The band that shifts are relative to."""
         return next(iter(self.scenes))
 
+    def label(self, band: str) -> str:
+        """A band by its number, and its name where that is known: "2 (B3)"."""
+        scene = self.scenes.get(band)
+        if scene is not None:
+            return label_band(band, scene.image.band_name)
+        missing = (one for one in self.rejected if one.values["band"] == band)
+        return label_band(band, next((one.values.get("band_name") for one in missing), None))
+
     @property
     def measurements(self) -> tuple[SceneMeasurement, ...]:
         """The measurements of all bands."""
@@ -92,7 +108,7 @@ class BandScenes(ShortRepr):
     def summary(self) -> str:
         """Which bands, and the MTF at Nyquist of each."""
         return "; ".join(
-            f"band {name}: mtf_nyquist across {one.across.mtf_nyquist}, along "
+            f"band {self.label(name)}: mtf_nyquist across {one.across.mtf_nyquist}, along "
             f"{one.along.mtf_nyquist}"
             for name, one in self.scenes.items()
         )
@@ -100,7 +116,10 @@ class BandScenes(ShortRepr):
     @property
     def edges(self) -> BandEdges:
         """The edges of all bands in one table."""
-        return BandEdges({name: one.edges for name, one in self.scenes.items()})
+        return BandEdges(
+            {name: one.edges for name, one in self.scenes.items()},
+            {name: one.image.band_name for name, one in self.scenes.items()},
+        )
 
 
 def scan_bands(
@@ -169,7 +188,7 @@ def scan_bands(
         try:
             scenes[name] = measured_scene(one, box, gsd, chosen, [own[place] for own in found])
         except FewEdgesError as error:
-            rejected.append(Rejected("fit", str(error), {"band": name}))
+            rejected.append(Rejected("fit", str(error), _named(name, one)))
             refused[name] = error.edges
     if not scenes:
         whose = "the band" if len(images) == 1 else f"none of the {len(images)} bands"
@@ -177,6 +196,12 @@ def scan_bands(
         raise FewEdgesError(f"{whose} {not_measured}: {rejected[0].reason}", BandEdges(refused))
     shifts, unshifted = _shifts(scenes)
     return BandScenes(scenes, shifts, tuple(rejected), unshifted)
+
+
+def _named(band: str, image: Image) -> dict[str, str]:
+    """What a band that was not measured is called."""
+    name = image.band_name
+    return {"band": band} if name is None else {"band": band, "band_name": name}
 
 
 def _shifts(

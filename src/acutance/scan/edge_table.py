@@ -116,7 +116,8 @@ class EdgeTable:
         Parameters
         ----------
         lonlat : function of (row, col) arrays, optional
-            Gives longitudes and latitudes. Without it coordinates are columns and rows of pixels.
+            Gives longitudes and latitudes. Without it coordinates are columns and rows of pixels,
+            and "crs" is "pixel".
         """
         _require_function(lonlat)
         columns = self.columns()
@@ -138,7 +139,8 @@ class EdgeTable:
             }
             for i, line in enumerate(lines)
         ]
-        return {"type": "FeatureCollection", "features": features}
+        crs = {"crs": "pixel"} if lonlat is None else {}
+        return {"type": "FeatureCollection", **crs, "features": features}
 
 
 def _require_function(lonlat: Any) -> None:

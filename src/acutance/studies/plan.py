@@ -20,13 +20,14 @@ from acutance.studies.table import Cell, Table
 from acutance.studies.trials import Execution, Record, run_trials
 from acutance.targets.straight import measure_edge, measure_pulse
 
-__all__ = ["PLAN_METRICS", "PlanOptions", "plan_target"]
+__all__ = ["MAX_WIDTH_PX", "MIN_WIDTH_PX", "PLAN_METRICS", "PlanOptions", "plan_target"]
 
 PLAN_METRICS = ("mtf_nyquist", "rer", "fwhm_px", "width_px")
 
 _ROWS_SHARES = (0.5, 1.0, 1.5, 2.0)
 """Numbers of rows compared with a single one that is planned."""
 
+MIN_WIDTH_PX, MAX_WIDTH_PX = 0.5, 20.0
 _MIN_ROWS, _MAX_ROWS = 20, 2000
 
 _ROOM_PX = 10.0
@@ -61,6 +62,8 @@ class PlanOptions:
         Of the bound of a free LSF.
     accuracy : float, optional
         Wanted standard deviation of the MTF at Nyquist: answered by a number of rows.
+    sensor_name : str, optional
+        What the sensor is called.
     """
 
     target: Literal["edge", "pulse"] = "edge"
@@ -72,6 +75,7 @@ class PlanOptions:
     draws: int = 200
     window_px: float = 10.0
     accuracy: float | None = None
+    sensor_name: str = ""
 
     def __post_init__(self) -> None:
         if self.target not in ("edge", "pulse"):
@@ -99,10 +103,13 @@ class PlanOptions:
                 f"angles_deg (--angle): {_listed(self.angles_deg)}; an edge without tilt has no "
                 "sub-pixel phases, and more than 30 degrees is not planned; 5 to 10 are best"
             )
-        if not self.widths_px or not all(0.5 <= width <= 20 for width in self.widths_px):
+        if not self.widths_px or not all(
+            MIN_WIDTH_PX <= width <= MAX_WIDTH_PX for width in self.widths_px
+        ):
             raise OptionError(
-                f"widths_px (--width-px, --width-m): {_listed(self.widths_px)}; a pulse is 0.5 to "
-                "20 px wide, 3 is best; check the width and the GSD"
+                f"widths_px (--width-px, --width-m): {_listed(self.widths_px)} px; a pulse is "
+                f"{MIN_WIDTH_PX:g} to {MAX_WIDTH_PX:g} px wide, 3 is best; check the width and the "
+                "GSD"
             )
         if self.accuracy is not None and not self.accuracy > 0:
             raise OptionError(f"accuracy is {self.accuracy:g}: it has to be above 0")
@@ -297,27 +304,32 @@ def _findings(options: PlanOptions, table: Table) -> tuple[Finding, ...]:
         value, choice = own[kind], own[column]
         best = float(choice[int(np.nanargmin(value))])
         good = ", ".join(f"{one:.3g}" for one in choice[value <= slack * np.nanmin(value)])
-        beside = _beside_plan(expected, value, slack)
+        beside = _beside_plan(expected, value, slack, simulated)
+        error = "error" if simulated else "bound"
         metres = float(own["target_width_m"][int(np.nanargmin(value))])
         on_ground = f" ({metres:.3g} m)" if name == "width" and math.isfinite(metres) else ""
         found.append(
             Finding(
                 f"best_{column}",
                 best,
-                f"{name}: {best:.3g} {unit}{on_ground} has the smallest error; within "
+                f"{name}: {best:.3g} {unit}{on_ground} has the smallest {error}; within "
                 f"{100 * (slack - 1):.0f} % of it: {good} {unit}{beside}",
             )
         )
     return tuple(found)
 
 
-def _beside_plan(planned: float, errors: Floats, slack: float) -> str:
-    """Whether the plan is one of the good designs, where another has the smallest error."""
+def _beside_plan(planned: float, errors: Floats, slack: float, simulated: bool) -> str:
+    """Whether the plan is one of the good designs, where another has the smallest error.
+
+    What was simulated is by chance in part, and bounds are not.
+    """
     excess = planned / float(np.nanmin(errors)) - 1
     if not excess > 0:
         return ""
     if 1 + excess <= slack:
-        return "; the plan is one of them: what is between them may be chance"
+        chance = ": what is between them may be chance" if simulated else ""
+        return f"; the plan is one of them{chance}"
     return f"; that of the plan is {100 * excess:.0f} % larger"
 
 

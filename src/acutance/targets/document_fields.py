@@ -73,6 +73,10 @@ def require_document(
     OptionError
         If it is none, or fields are missing.
     """
+    if isinstance(document, str | bytes):
+        raise OptionError(
+            f"{name} is text: read it first, json.loads(text), and give the mapping that returns"
+        )
     found = document.get("schema") if isinstance(document, Mapping) else None
     if found != schema:
         raise OptionError(f"this is no document {schema} (its schema is {found!r}): {advice}")

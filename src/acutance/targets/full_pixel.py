@@ -32,7 +32,7 @@ def full_pixel(
     surest = max(mtf_nyquist, key=_at_least)
     least = _at_least(surest)
     found = (
-        f"the MTF at Nyquist is {surest:.2f}, surely (by {_SURE:.0f} standard deviations) above "
+        f"the MTF at Nyquist is {surest}, surely (by {_SURE:.0f} standard deviations) above "
         f"{least:.2f}; that of a full pixel without any optics is .64"
     )
     return answer("full_pixel", least, found, limits, caution=caution)

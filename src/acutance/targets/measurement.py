@@ -153,7 +153,20 @@ class Measurement(HasResponse, HasDirections[Response], HasChecks):
         return self.response_at(angle_deg).mtf
 
     def psf(self, half_width_px: float = 5.0, step_px: float = 0.1) -> tuple[Floats, Floats]:
-        """Point spread function: see `Otf2d.psf`."""
+        """Point spread function around its origin, pixel area included.
+
+        Parameters
+        ----------
+        half_width_px, step_px : float, optional
+            Half the width of the returned square and the spacing of its grid.
+
+        Returns
+        -------
+        distance_px : (n,) array
+            Places along either axis.
+        psf : (n, n) array
+            Light per square pixel at (row, column) distances; its integral over the plane is 1.
+        """
         return self.otf.psf(half_width_px, step_px)
 
     @cached_property

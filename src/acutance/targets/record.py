@@ -20,9 +20,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from acutance.curves import METRICS
 from acutance.curves.direction import gsd_along
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
+from acutance.raster.band_label import label_band
 from acutance.raster.image import AlongTrack
 from acutance.targets.check import Check, HasChecks, count_failed
 from acutance.targets.directions import HasDirections
@@ -71,6 +73,12 @@ class ImageInfo:
         if they were taken as they are.
     file_gsd_m : (float, float) or None
         GSD that the image has of itself, where the stated one is another.
+    band_name : str or None
+        As the file or a document beside it states it.
+    band_count : int or None
+        Bands of the file; ``None`` where it is not known.
+    region : str or None
+        What the region is called, where it has a name.
     """
 
     path: str | None = None
@@ -81,6 +89,20 @@ class ImageInfo:
     pixel_gsd_m: tuple[float, float] | None = None
     linearized: str | None = None
     file_gsd_m: tuple[float, float] | None = None
+    band_name: str | None = None
+    band_count: int | None = None
+    region: str | None = None
+
+    @property
+    def band_label(self) -> str:
+        """Number and name of the band: "2 (B3)"."""
+        return label_band(self.band, self.band_name)
+
+    @property
+    def band_told_apart(self) -> str | None:
+        """The name of the band; without one its number where the file has several."""
+        is_one_of_several = self.band_count is not None and self.band_count > 1
+        return self.band_name or (str(self.band) if is_one_of_several else None)
 
     @property
     def gsd_m(self) -> float | None:
@@ -108,6 +130,9 @@ class ImageInfo:
             "along_track": self.along_track,
             "linearized": self.linearized,
             "file_gsd_m": None if self.file_gsd_m is None else list(self.file_gsd_m),
+            "band_name": self.band_name,
+            "band_count": self.band_count,
+            "region": self.region,
         }
 
     @classmethod
@@ -127,6 +152,9 @@ class ImageInfo:
             None if sides is None else (float(sides[0]), float(sides[1])),
             document.get("linearized"),
             None if of_file is None else (float(of_file[0]), float(of_file[1])),
+            document.get("band_name"),
+            document.get("band_count"),
+            document.get("region"),
         )
 
 
@@ -176,6 +204,15 @@ class Record(ShortRepr, HasDirections[RecordedDirection], HasChecks):
                 "acutance wrote"
             ) from error
         return record
+
+    def __getattr__(self, name: str) -> Any:
+        # Who comes from a measurement of one direction looks for its numbers here.
+        if name in (*METRICS, "mtf", "lsf", "esf"):
+            first = next(iter(self.directions))
+            raise AttributeError(
+                f"a Record has its numbers by direction: read .{first}.{name}", name=name, obj=self
+            )
+        raise AttributeError(f"'Record' object has no attribute {name!r}", name=name, obj=self)
 
     def to_dict(self) -> dict[str, Any]:
         """The document; nothing is lost by `from_dict`."""

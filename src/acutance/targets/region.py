@@ -60,6 +60,8 @@ class RegionPixels:
         Undeclared fill that was left out: NaN in `pixels`.
     clipped : ClipLevels
         Values at which the image around the region was found to be clipped.
+    name : str
+        Of the region, where it has one.
     """
 
     pixels: Floats
@@ -69,11 +71,12 @@ class RegionPixels:
     image: Image
     fill: Fill | None = None
     clipped: ClipLevels = NOT_CLIPPED
+    name: str = ""
 
     @cached_property
     def info(self) -> ImageInfo:
         """What a measurement records of its image: the same for every kind of target."""
-        return image_info(self.image, self.box, self.gsd)
+        return image_info(self.image, self.box, self.gsd, self.name)
 
     @cached_property
     def traces(self) -> ProcessingTraces:
@@ -81,7 +84,7 @@ class RegionPixels:
         return with_surroundings(traces_of_pixels(self.pixels), self.image, self.box)
 
 
-def image_info(image: Image, box: Box, gsd: Gsd | None) -> ImageInfo:
+def image_info(image: Image, box: Box, gsd: Gsd | None, region: str = "") -> ImageInfo:
     """What a measurement records of a part of an image."""
     of_file = image.gsd_of_file(box.row + box.height / 2, box.col + box.width / 2)
     return ImageInfo(
@@ -89,6 +92,9 @@ def image_info(image: Image, box: Box, gsd: Gsd | None) -> ImageInfo:
         None if gsd is None else (gsd.row_m, gsd.col_m),
         None if image.characteristic is None else image.characteristic.words,
         (of_file.row_m, of_file.col_m) if gsd and of_file and _is_another(gsd, of_file) else None,
+        image.band_name,
+        None if image.path is None else image.band_count,
+        region or None,
     )  # fmt: skip
 
 
@@ -154,7 +160,10 @@ def read_region(
     gsd = source.gsd(box.row + box.height / 2, box.col + box.width / 2)
     if gsd_m is not None:
         gsd = Gsd.given(gsd_m)
-    return RegionPixels(pixels, box, source.saturation_level, gsd, source, fill)
+    return RegionPixels(
+        pixels, box, source.saturation_level, gsd, source, fill,
+        name="" if region is None else region.name,
+    )  # fmt: skip
 
 
 def read_data(image: Image, box: Box) -> tuple[Floats, Fill | None]:

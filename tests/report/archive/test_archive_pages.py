@@ -97,6 +97,33 @@ def test_the_page_of_a_trend_begins_with_what_has_changed():
     assert '<div class="verdict good">' in still
 
 
+@pytest.mark.parametrize(("count", "sought"), [(5, "drift"), (12, "change")])
+def test_no_change_is_no_good_news_where_little_could_be_found(count, sought):
+    series = series_of(count=count, rate=0.0, step=0.0)
+    # Seven weeks show no drift of a few per cent a year.
+    short = replace(series, when=2024 + (series.when - 2023) / 22)
+    trend = fit_trend(short)
+    found = trend_verdict(trend)
+    assert found.word == "usable"
+    assert f"no {sought} is found" in found.text
+    page = words_of(trend_page(trend))
+    unsought = f"not sought ({count} images; from 8 on)"
+    assert (unsought in page) == (("steps", f"{unsought}.") in found.details) == (count < 8)
+    assert ("probability of no step" in page) == trend.steps_are_sought == (count >= 8)
+
+
+def test_steps_that_are_not_sought_have_no_probability_in_the_state(edge_record, tmp_path):
+    with Archive(tmp_path / "few.db") as few:
+        for at in range(4):
+            image = ImageEntry(
+                path=f"{at}.tif", sensor="QB02", acquired=BEGIN + timedelta(days=16 * at)
+            )
+            few.add_entries([Entry(record=edge_record, image=image)])
+        page = words_of(sensor_page(few, "QB02"))
+    assert "not sought (4 images; from 8 on)" in page
+    assert "none found" not in page
+
+
 def test_a_level_without_its_season_says_so():
     series = series_of(rate=0.0, step=0.0)
     seasonal = replace(series, value=series.value + 0.02 * np.cos(2 * np.pi * series.when))

@@ -235,7 +235,10 @@ def _without_deviations(plane):
         (lambda d: d.__delitem__(slice(1, None)), "only one was given, one direction"),
         (lambda d: d.clear(), "nothing to combine"),
         (lambda d: d.__setitem__(0, {"schema": "acutance/comparison/1"}), "several methods"),
-        (lambda d: d.__setitem__(0, {"schema": "acutance/bands/1"}), "scan --band N"),
+        (
+            lambda d: d.__setitem__(0, {"schema": "acutance/bands/1"}),
+            "that of one .--band N --json",
+        ),
         (lambda d: d.__setitem__(0, 5), "is a int: give results"),
     ],
 )

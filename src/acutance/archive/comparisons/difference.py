@@ -8,6 +8,7 @@ from typing import Any, Final, Literal
 from acutance.archive.comparisons.degrees import LEVEL
 from acutance.archive.comparisons.pairing import MIN_IMAGES, Basis
 from acutance.curves import Estimate
+from acutance.curves.metric_words import metric_words
 
 __all__ = ["ABSOLUTE", "Answer", "Difference", "gsds_differ", "is_of_pixels"]
 
@@ -122,6 +123,7 @@ class Difference:
     @property
     def _answer_words(self) -> str:
         differ = self.answer == "differ"
+        label = metric_words(self.metric).label
         sign = -1 if differ and self.relative.value < 0 else 1
         relative = sign * self.relative
         low, high = (100 * end for end in relative.interval(LEVEL))
@@ -131,11 +133,11 @@ class Difference:
             less = f", less than {100 * self.margin:g} %" if high / 100 <= self.margin else ""
             unsigned = ends.replace("+", "")
             size = f"{100 * relative} %{self._unit_words}{less}"
-            return f"{self._larger_words} by {size} ({self.metric}, {unsigned})"
+            return f"{self._larger_words} by {size} ({label}, {unsigned})"
         pair = f"{self.first} and {self.second}"
         if low != low:
-            return f"whether {pair} differ cannot be told ({self.metric}, without deviations)"
-        ends = f"{self.metric}, {self.first} minus {self.second}, {ends}"
+            return f"whether {pair} differ cannot be told ({label}, without deviations)"
+        ends = f"{label}, {self.first} minus {self.second}, {ends}"
         if self.answer == "agree":
             return f"{pair} agree within {100 * self.margin:g} %{self._unit_words} ({ends})"
         if self._is_of_few_images:

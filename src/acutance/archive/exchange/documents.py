@@ -97,11 +97,14 @@ def _measured(document: Mapping[str, Any], stated: Stated) -> Entry:
         acquired=stated.acquired,
         gsd_m=record.image.pixel_gsd_m,
     )
-    target = stated.target if stated.target is not None else document.get("region") or None
+    named = document.get("region") or record.image.region
+    target = stated.target if stated.target is not None else named
     if isinstance(target, str):
         target = TargetEntry(name=target, kind=record.kind)
-    # Documents of several bands name that of each.
-    band = stated.band if stated.band is not None else document.get("band")
+    # The same name whether bands were measured one by one or together; documents of several bands
+    # of an array number them.
+    names = (stated.band, record.image.band_name, document.get("band"))
+    band = next((one for one in names if one is not None), record.image.band_told_apart)
     return Entry(record=record, image=image, target=target, band=band)
 
 
@@ -118,5 +121,6 @@ def _rejected(document: Mapping[str, Any], stated: Stated, marks: Mapping[str, A
     target = stated.target if stated.target is not None else region
     if isinstance(target, str):
         target = TargetEntry(name=target, kind="unknown")
-    band = stated.band if stated.band is not None else rejected.values.get("band")
+    names = (stated.band, rejected.values.get("band_name"), rejected.values.get("band"))
+    band = next((one for one in names if one is not None), None)
     return Entry(rejected=rejected, image=image, target=target, band=band)

@@ -26,8 +26,9 @@ TEXTS = (
 )  # fmt: skip
 MOMENTS = ("acquired", "measured_at")
 NUMBERS = (
-    "lon", "lat", *_OF_IMAGE_NUMBERS, "snr", "angle_deg", "gsd_m", *metric_columns(),
-    *systematic_columns(),
+    "lon", "lat", *_OF_IMAGE_NUMBERS, "snr", "angle_deg", "gsd_m",
+    *metric_columns(),
+    *systematic_columns(), "normal_deg",
 )  # fmt: skip
 FLAGS = ("measured",)
 
@@ -61,4 +62,6 @@ def flat_rows(entry: Entry) -> Iterator[dict[str, Any]]:
     }
     document = json_bytes(entry_document(entry)).decode()
     for number, direction in enumerate(rows.directions or ({},)):
-        yield shared | direction | {"document": None if number else document}
+        # The column of the tables has an older name, which means an acute angle elsewhere.
+        own_normal = {"normal_deg": direction.get("angle_deg")}
+        yield shared | direction | own_normal | {"document": None if number else document}

@@ -40,11 +40,14 @@ class Imported:
     refused : mapping of str to str
         By file (and line) why it could not be read, or what is stated of it and is not what the
         archive has.
+    notes : tuple of str
+        What has to be known of what was added.
     """
 
     read: int
     new: int
     refused: Mapping[str, str]
+    notes: tuple[str, ...] = ()
 
 
 def import_files(
@@ -73,6 +76,7 @@ def import_files(
     """
     refused: dict[str, str] = {}
     described: dict[str, tuple[str, ImageEntry]] = {}
+    unnamed: dict[str, set[int]] = {}
     count = 0
 
     def entries() -> Iterator[Entry]:
@@ -83,13 +87,27 @@ def import_files(
                 if entry.key is None:
                     for key in filter(None, keys_of(entry)):
                         described[key] = place, entry.image
+                    if entry.record is not None and entry.band is None and entry.image.path:
+                        own = unnamed.setdefault(entry.image.path, set())
+                        own.add(entry.record.image.band)
                 yield entry
 
     new = add_entries(database, entries(), run, progress)
     images = {key: image for key, (_, image) in described.items()}
     for key, reason in contradictions(database, images).items():
         refused[described[key][0]] = reason
-    return Imported(count, new, refused)
+    return Imported(count, new, refused, tuple(_band_notes(unnamed)))
+
+
+def _band_notes(unnamed: Mapping[str, set[int]]) -> Iterator[str]:
+    """Images of which several bands were added that nothing tells apart."""
+    for path, bands in unnamed.items():
+        if len(bands) > 1:
+            listed = " and ".join(map(str, sorted(bands)))
+            yield (
+                f"{path}: bands {listed} are kept without a name, and means are of "
+                f"{'both' if len(bands) == 2 else 'all'}: import each with its name (--band)"
+            )
 
 
 def refused_files(paths: Iterable[str | os.PathLike[str]], stated: Stated) -> dict[str, str] | None:

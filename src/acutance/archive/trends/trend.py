@@ -22,6 +22,7 @@ from acutance.archive.trends.posterior import TrendPosterior
 from acutance.archive.trends.relative import is_told_from_zero
 from acutance.archive.trends.scatter import with_scatter
 from acutance.archive.trends.series import date_of, decimal_year
+from acutance.archive.trends.tuned import MIN_IMAGES_BY_STEPS
 from acutance.archive.trends.words import trend_text
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
@@ -158,9 +159,14 @@ class Trend(ShortRepr):
         """Whether the level is told from 0, of which changes have no per cent."""
         return is_told_from_zero(self.mean(float(self.images.when[-1]), season=False))
 
+    @property
+    def steps_are_sought(self) -> bool:
+        """Whether there are images enough to seek a step at an unknown date."""
+        return self.images.size >= MIN_IMAGES_BY_STEPS[0]
+
     @cached_property
     def step_probability(self) -> float:
-        """Probability of one or more steps at unknown dates."""
+        """Probability of one or more steps at unknown dates; 0 where none is sought."""
         return float(self.posterior.step_probability[1:].sum())
 
     @property
@@ -332,6 +338,7 @@ class Trend(ShortRepr):
             "rate_per_year": self.rate_per_year.to_dict(),
             "relative_rate_per_year": self.relative_rate_per_year.to_dict(),
             "steady_probability": self.steady_probability,
+            "steps_are_sought": self.steps_are_sought,
             "step_probability": self.step_probability,
             "probability_by_steps": self.posterior.step_probability.tolist(),
             "changes": [change.to_dict() for change in self.changes],

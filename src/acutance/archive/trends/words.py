@@ -23,8 +23,10 @@ __all__ = [
     "since_words",
     "size_words",
     "trend_text",
+    "unsought_words",
 ]
 
+_SOUGHT_FROM = f"Steps are sought from {MIN_IMAGES_BY_STEPS[0]} images on"
 _SURE = 0.95
 _WORTH = 0.1
 _NOTICED = 0.3
@@ -98,8 +100,8 @@ def part_words(part: float) -> str:
 
 
 def _step_words(trend: Trend) -> list[str]:
-    if trend.images.size < MIN_IMAGES_BY_STEPS[0]:
-        return [f"Steps are sought from {MIN_IMAGES_BY_STEPS[0]} images on."]
+    if not trend.steps_are_sought:
+        return [f"{_SOUGHT_FROM}."]
     found = [
         f"A step of {size_words(change)} about {change.date} ({change.since} to "
         f"{change.until}), probability {change.probability:.2f}."
@@ -114,6 +116,14 @@ def _step_words(trend: Trend) -> list[str]:
         f"It has changed (probability {1 - trend.steady_probability:.2f}), and these images cannot "
         f"tell a drift from a step (probability of a step: {chance:.2f})."
     ]
+
+
+def unsought_words(trend: Trend) -> str:
+    """That steps are not sought in so few images; "" where they are."""
+    if trend.steps_are_sought:
+        return ""
+    count = counted(trend.images.size, "image")
+    return f"not sought ({count}; from {MIN_IMAGES_BY_STEPS[0]} on)"
 
 
 def _event_words(trend: Trend) -> list[str]:

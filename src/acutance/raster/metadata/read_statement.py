@@ -14,9 +14,9 @@ from acutance.raster.metadata.files_beside import files_beside
 from acutance.raster.metadata.findings import Findings, Stated, find
 from acutance.raster.metadata.gdal_tags import file_tags, read_tags
 from acutance.raster.metadata.statement import ImageStatement, state
-from acutance.raster.open_image import open_image
+from acutance.raster.open_image import open_unnamed
 
-__all__ = ["read_statement"]
+__all__ = ["band_names", "read_statement"]
 
 
 def read_statement(
@@ -44,14 +44,34 @@ def read_statement(
     ImageError
         If the image cannot be read, or a document that was named is not there.
     """
-    image = open_image(path)
+    image = open_unnamed(path)
     name = Path(str(image.path)).name
-    of_files = [read_document(one, name) for one in files_beside(str(image.path))]
-    if documents is not None:
+    if documents is None:
+        of_files = [read_document(one, name) for one in files_beside(str(image.path))]
+    else:
         of_files = [read_document(Path(one), name, stated=True) for one in documents]
     tags = read_tags(file_tags(str(image.path)), name)
     sources = _with_time([_of_geolocation(image, name), *of_files, tags])
     return _for_bands(state(str(image.path), sources, _place(image)), image.band_count)
+
+
+def band_names(image: Image) -> tuple[str, ...] | None:
+    """Names of all bands of an image's file, as of `read_statement`; None where it states none.
+
+    Parameters
+    ----------
+    image : Image
+        One of the bands of a file.
+    """
+    path = str(image.path)
+    try:
+        of_files = [read_document(one, Path(path).name) for one in files_beside(path)]
+    except OSError:
+        # A folder that cannot be listed hides documents, not the image.
+        of_files = []
+    tags = read_tags(file_tags(path), Path(path).name)
+    found = _for_bands(state(path, [*of_files, tags]), image.band_count).bands
+    return None if found is None else found.value
 
 
 def _of_geolocation(image: Image, name: str) -> Findings:

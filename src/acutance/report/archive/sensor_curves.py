@@ -65,7 +65,8 @@ def _plate(records: Sequence[Record], name: str) -> Plate | None:
             if len(drawn) > 1:
                 axes.plot(freq, np.median(drawn, axis=0), color=INK, linewidth=1.8, label="median")
                 axes.legend(loc="upper right")
-            axes.set(title=f"MTF, {direction}", xlabel="frequency [c/px]", xlim=(0.0, _TO_CPP))
+            title = ", ".join(filter(None, ("MTF", name, direction)))
+            axes.set(title=title, xlabel="frequency [c/px]", xlim=(0.0, _TO_CPP))
         all_axes[0].set_ylabel("MTF")
     counts = " and ".join(
         f"{counted(len(several), 'measurement')} {direction}"

@@ -14,6 +14,7 @@ from acutance.archive.dates import day_or_minute
 from acutance.archive.requirement_answers import Answer, SpecificationCheck
 from acutance.archive.tables_by import MeasurementTable, table_by
 from acutance.archive.trends import Trend
+from acutance.archive.trends.words import unsought_words
 from acutance.curves import MAIN_NUMBERS
 from acutance.curves.metric_words import METRIC_WORDS, metric_words
 from acutance.report.archive.sensor_state import SeriesState
@@ -72,7 +73,8 @@ def _span(days: tuple[date, ...]) -> str:
 def _changes(trend: Trend) -> list[str]:
     found = [f"{one.date} {step_words(one)}" for one in trend.changes]
     found += [f"{one.date} {one.name} {step_words(one)}" for one in trend.events]
-    return found or [f"none found ({1 - trend.step_probability:.2f})"]
+    none = unsought_words(trend) or f"none found ({1 - trend.step_probability:.2f})"
+    return found or [none]
 
 
 def specification_table(check: SpecificationCheck) -> Table:

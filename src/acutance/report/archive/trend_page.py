@@ -7,7 +7,13 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from acutance.archive.trends.series import date_of
-from acutance.archive.trends.words import new_drift_words, season_words, since_words
+from acutance.archive.trends.tuned import DRIFT_STDS_PER_YEAR
+from acutance.archive.trends.words import (
+    new_drift_words,
+    season_words,
+    since_words,
+    unsought_words,
+)
 from acutance.curves import Estimate
 from acutance.curves.metric_words import METRIC_WORDS
 from acutance.report.archive.trend_figure import are_bad, trend_figure
@@ -97,16 +103,23 @@ def trend_verdict(trend: Trend, limit: float | None = None, label: str = "") -> 
         for one in trend.events
         if not _holds_zero(one.size)
     ]
-    changed = bool(words)
-    if not changed:
-        words = [f"no change is found: {rate_words(trend)} a year{since}"]
+    word: Literal["good", "usable", "doubtful"] = "doubtful"
+    if not words:
+        # Without steps sought, or with a drift that is hardly known, "none" is no good news.
+        sought = "change" if trend.steps_are_sought else "drift"
+        words = [f"no {sought} is found: {rate_words(trend)} a year{since}"]
+        word = "good" if trend.steps_are_sought and _drift_is_known(trend) else "usable"
     level = f"{METRIC_WORDS[trend.metric].of(_value(trend.level))} on {trend.last}"
-    word: Literal["good", "doubtful"] = "doubtful" if changed else "good"
     details = [("season", text) for text in (with_minus(season_words(trend)),) if text]
     details += [("steps", text) for text in _open_steps(trend)]
     if limit is not None:
         details.append(("limit", f"{trend.crosses(limit).summary()}."))
     return Verdict(word, f"{label}{level}; {', '.join(words)}.", tuple(details))
+
+
+def _drift_is_known(trend: Trend) -> bool:
+    """Whether "none is found" means more of a drift than was expected before any image."""
+    return not trend.has_scale or trend.relative_rate_per_year.std < min(DRIFT_STDS_PER_YEAR)
 
 
 def _holds_zero(estimate: Estimate) -> bool:
@@ -115,6 +128,8 @@ def _holds_zero(estimate: Estimate) -> bool:
 
 
 def _open_steps(trend: Trend) -> list[str]:
+    if unsought := unsought_words(trend):
+        return [f"{unsought}."]
     if trend.changes or trend.step_probability < _WORTH:
         return []
     return [
@@ -149,9 +164,15 @@ def _numbers_table(trend: Trend) -> Table:
         ("scatter between images", _value(trend.scatter), MISSING),
         ("season, half its range", _value(trend.season_amplitude), MISSING),
         ("probability of a season", f"{trend.season_probability:.2f}", MISSING),
-        ("probability of no step at an unknown date", f"{1 - trend.step_probability:.2f}", MISSING),
+        _no_step_row(trend),
     ]
     return Table(("", "Value", "95 % interval"), tuple(rows), "lrr", title="Numbers")
+
+
+def _no_step_row(trend: Trend) -> tuple[str, str, str]:
+    if unsought := unsought_words(trend):
+        return "steps at unknown dates", unsought, MISSING
+    return "probability of no step at an unknown date", f"{1 - trend.step_probability:.2f}", MISSING
 
 
 def _changes_table(trend: Trend) -> tuple[Table, ...]:

@@ -63,15 +63,23 @@ def bars_panels(measurement: BarsMeasurement) -> tuple[Panel, ...]:
     )
 
 
+_ROOM_FOR_LABEL = 0.7
+"""Part of the image's width up to which a label stands right of its group."""
+
+
 def _draw_groups(axes: Axes, measurement: BarsMeasurement) -> None:
-    show_pixels(axes, required(measurement.details).pixels, *measurement.image.roi[:2])
+    pixels = required(measurement.details).pixels
+    show_pixels(axes, pixels, *measurement.image.roi[:2])
+    last = measurement.image.roi[1] + _ROOM_FOR_LABEL * pixels.shape[1]
     for number, group in enumerate(measurement.groups, start=1):
         rows, cols = group.bars.region.T
         axes.fill(cols, rows, facecolor="none", edgecolor=ORANGE, linewidth=1.2)
-        # In a box a label is legible on bars, on a background and off the image.
+        # In a box a label is legible on bars and on a background; it stays inside the image.
+        inside = float(cols.max()) > last
         axes.annotate(
-            f"{number}: {group.freq_cpp:.2f}", (float(cols.max()), float(rows.mean())), (4, 0),
-            textcoords="offset points", fontsize=7, color="white", va="center", fontweight="bold",
+            f"{number}: {group.freq_cpp:.3g}", (float(cols.max()), float(rows.mean())),
+            (-4 if inside else 4, 0), textcoords="offset points", ha="right" if inside else "left",
+            fontsize=7, color="white", va="center", fontweight="bold",
             bbox={"boxstyle": "round,pad=0.15", "facecolor": VERMILION, "edgecolor": "none"},
         )  # fmt: skip
     # In two lines: a map of bars is often narrow, and a panel cuts off what is wider.

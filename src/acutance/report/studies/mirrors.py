@@ -44,35 +44,43 @@ def mirror_plan_text(plan: MirrorPlan) -> str:
     elif options.arrangement == "columns":
         columns = counted(options.column_count, "column")
         apart = (
-            f", {layout.apart_px:.2f} px ({layout.apart_px * across_m:.2f} m) apart"
+            f", {layout.apart_px:.2f} px ({_metres(layout.apart_px * across_m)} m) apart"
             if options.column_count > 1
             else ""
         )
         where = f"{options.count} mirrors in {columns}{apart}"
         steps = (
             f"\n  steps of {layout.step_px[1]:g} px across and {layout.step_px[0]:g} px along "
-            f"({layout.step_px[1] * across_m:.2f} by {layout.step_px[0] * along_m:.2f} m), "
+            f"({_metres(layout.step_px[1] * across_m)} by "
+            f"{_metres(layout.step_px[0] * along_m)} m), "
             f"{layout.angle_deg:.1f} degrees against the image's columns"
         )
     else:
         where = f"{counted(options.count, 'mirror')} in a square"
         steps = (
-            f"\n  pitch {layout.step_px[0]:g} px ({layout.step_px[0] * across_m:.2f} m across, "
-            f"{layout.step_px[0] * along_m:.2f} m along)"
+            f"\n  pitch {layout.step_px[0]:g} px "
+            f"({_metres(layout.step_px[0] * across_m)} m across, "
+            f"{_metres(layout.step_px[0] * along_m)} m along)"
         )
     changes = (-0.05, -0.02, 0.0, 0.02, 0.05)
     gaps = ", ".join(f"{layout.gap_px(change):.2f} ({change:+.0%})" for change in changes)
     blocks = [
         f"{where}{steps}\n  largest gap of the phases, px, if the GSD is other than planned: "
         f"{gaps}",
-        f"mirrors: radius of curvature {plan.radius_m:.2f} m, cap at least {plan.diameter_m:.2f} m "
-        f"across\n  for a brightest pixel as bright as ground of reflectance {options.level:g} on "
+        f"mirrors: radius of curvature {_metres(plan.radius_m)} m, cap at least "
+        f"{_metres(plan.diameter_m)} m across\n"
+        f"  for a brightest pixel as bright as ground of reflectance {options.level:g} on "
         f"ground of {options.ground:g};\n  the brightest pixel holds {100 * plan.peak_share:.0f} % "
         "of a mirror's light",
         _expected(plan),
         *(f"note: {note}" for note in plan.notes),
     ]
     return "\n\n".join(blocks)
+
+
+def _metres(length_m: float) -> str:
+    """A length to three digits at least: light goes with the square of a radius."""
+    return f"{length_m:.2f}" if length_m >= 1 else f"{length_m:#.3g}"
 
 
 def _expected(plan: MirrorPlan) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
 from acutance.report.paper import BLUE, FAINT, GREEN, ORANGE, new_page, styled
 
@@ -43,16 +44,22 @@ def plan_figure(result: StudyResult) -> Figure:
             for place, name in zip(line, varied, strict=True):
                 column, _ = _VARIED[name]
                 _draw(place, table.where(varied=name), column, metric)
-            line[0].set_ylabel(f"std of {words}")
+            line[0].set_ylabel(f"error of {words}")
             line[0].set_ylim(0, _top(table, metric))
         for place, name in zip(axes[-1], varied, strict=True):
             place.set_xlabel(_VARIED[name][1])
+        for place, name in zip(axes[-1], varied, strict=True):
+            if name == "rows":
+                # Halves of a row are no design.
+                place.xaxis.set_major_locator(MaxNLocator(integer=True, steps=[1, 2, 5, 10]))
         axes[0, 0].legend(loc="best")
+        name = result.options.sensor_name
+        sensor = f" for {name}" if name else ""
         width = float(table["target_width_px"][0])
         across = f" {width:.3g} px wide" if np.isfinite(width) else ""
         figure.suptitle(
-            f"{result.title}: {table['rows'][0]:.0f} rows{across} at {table['angle_deg'][0]:g}°, "
-            f"SNR {result.options.snr:g}",
+            f"{result.title}{sensor}: {table['rows'][0]:.0f} rows{across} at "
+            f"{table['angle_deg'][0]:g}°, SNR {result.options.snr:g}",
             fontsize=12.5, fontweight="bold", x=0.01, ha="left",
         )  # fmt: skip
         return figure

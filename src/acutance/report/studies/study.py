@@ -89,7 +89,16 @@ def plan_text(result: StudyResult) -> str:
             f"MTF, RER, FWHM{', found' if is_pulse else ''}: rms error of our estimator in "
             f"{result.options.draws} simulated images."
         )
-    return "\n".join([study_text(result), "", *lines, "", *caption])
+    return "\n".join([study_text(result), _sensor_line(result), "", *lines, "", *caption])
+
+
+def _sensor_line(result: StudyResult) -> str:
+    """The sensor that is planned for: deviations depend on its sharpness."""
+    options = result.options
+    own = options.sensor.response(options.angles_deg[0]).mtf_nyquist.value
+    named = f" {options.sensor_name}" if options.sensor_name else ""
+    gsd = "" if options.sensor.gsd_m is None else f", GSD {options.sensor.gsd_m:.4g} m"
+    return f"  sensor{named}: MTF at Nyquist {own:.3f}{gsd}"
 
 
 def _cell(name: str, value: float | int | str) -> str:

@@ -75,7 +75,7 @@ def _pair_table(measurement: BiresolutionMeasurement) -> Table:
     mtf = [measurement.local_mtf_nyquist(axis)[0] for axis in ("across", "along")]
     scatter = [float(np.nanstd(one)) if np.isfinite(one).any() else float("nan") for one in mtf]
     found = (
-        ("high image", f"{high.path or 'array in memory'}, band {high.band}"),
+        ("high image", f"{high.path or 'array in memory'}, band {high.band_label}"),
         ("ratio of the GSDs", f"{ratio}, {SOURCES[grid.source]}"),
         ("shift of the low content", f"{down} px down, {across} px across"),
         ("gain, offset", f"{measurement.gain:.5g}, {measurement.offset:.5g} DN"),

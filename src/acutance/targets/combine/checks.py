@@ -59,7 +59,7 @@ def check_combination(
         _correction(fit, limits),
         _beyond(parts, limits),
         answer("directions", directions, f"{directions} directions were measured", limits),
-        _counted("failed_inputs", failed, "that are doubtful or invalid themselves", limits),
+        _counted("failed_inputs", failed, "whose own checks failed", limits),
         _counted("shared_targets", _shared(inputs), "of the same pixels", limits, "pair"),
         _counted("assumed_covariance", assumed, "without covariance", limits),
         _counted("unknown_gsd", without_gsd, "without a GSD", limits),

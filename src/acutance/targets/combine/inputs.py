@@ -128,7 +128,9 @@ def read_inputs(
     for i, one in enumerate(measurements):
         name = None if names is None else names[i]
         records = records_of(one, name or f"measurement {i + 1}")
-        several = [f"{name or 'edge'} {k + 1}" for k in range(len(records))]
+        several = [
+            f"{name or 'edge'} {record.image.region or k + 1}" for k, record in enumerate(records)
+        ]
         called = [name] if len(records) == 1 else several
         found += [
             _input(record, name or f"measurement {i + 1}", own)
@@ -175,7 +177,7 @@ def _documents(document: Mapping[str, Any], origin: str) -> list[Mapping[str, An
         )
     if schema == "acutance/bands/1":
         raise OptionError(
-            f"{origin} holds a measurement of every band: give that of one (scan --band N --json)"
+            f"{origin} holds a measurement of every band: give that of one (--band N --json)"
         )
     if isinstance(schema, str) and schema.startswith("acutance/"):
         raise OptionError(
