@@ -78,6 +78,8 @@ class Image(ShortRepr):
         The GSD declared by the file, also where the caller gave another.
     every_value_is_data : bool
         If true, fill that is not declared is not looked for: see `acutance.raster.Fill`.
+    stated_nodata : float or None
+        The nodata value that was stated when the file was opened.
     """
 
     path: str | None
@@ -93,6 +95,7 @@ class Image(ShortRepr):
     characteristic: Characteristic | None = None
     declared_gsd: Gsd | None = None
     every_value_is_data: bool = False
+    stated_nodata: float | None = None
 
     def __post_init__(self) -> None:
         if self.along_track not in ("x", "y"):

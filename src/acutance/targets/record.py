@@ -12,7 +12,7 @@ import math
 import pickle
 import zlib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 from functools import cached_property
 from typing import Any
@@ -71,6 +71,10 @@ class ImageInfo:
         if they were taken as they are.
     file_gsd_m : (float, float) or None
         GSD that the image has of itself, where the stated one is another.
+    is_polygon : bool
+        Whether the region leaves out pixels of `roi`.
+    stated_nodata : float or None
+        The nodata value that was stated when the image was opened.
     """
 
     path: str | None = None
@@ -81,6 +85,9 @@ class ImageInfo:
     pixel_gsd_m: tuple[float, float] | None = None
     linearized: str | None = None
     file_gsd_m: tuple[float, float] | None = None
+    # Two facts for the command that repeats a measurement, which documents do not have.
+    is_polygon: bool = field(default=False, compare=False)
+    stated_nodata: float | None = field(default=None, compare=False)
 
     @property
     def gsd_m(self) -> float | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -60,6 +60,8 @@ class RegionPixels:
         Undeclared fill that was left out: NaN in `pixels`.
     clipped : ClipLevels
         Values at which the image around the region was found to be clipped.
+    is_polygon : bool
+        Whether the region leaves out pixels of the box.
     """
 
     pixels: Floats
@@ -69,11 +71,13 @@ class RegionPixels:
     image: Image
     fill: Fill | None = None
     clipped: ClipLevels = NOT_CLIPPED
+    is_polygon: bool = False
 
     @cached_property
     def info(self) -> ImageInfo:
         """What a measurement records of its image: the same for every kind of target."""
-        return image_info(self.image, self.box, self.gsd)
+        found = image_info(self.image, self.box, self.gsd)
+        return replace(found, is_polygon=self.is_polygon)
 
     @cached_property
     def traces(self) -> ProcessingTraces:
@@ -89,6 +93,7 @@ def image_info(image: Image, box: Box, gsd: Gsd | None) -> ImageInfo:
         None if gsd is None else (gsd.row_m, gsd.col_m),
         None if image.characteristic is None else image.characteristic.words,
         (of_file.row_m, of_file.col_m) if gsd and of_file and _is_another(gsd, of_file) else None,
+        stated_nodata=image.stated_nodata,
     )  # fmt: skip
 
 
@@ -137,8 +142,10 @@ def read_region(
             f"{_MIN_SIDE_PX} both ways"
         )
     pixels, fill = read_data(source, box)
+    is_polygon = False
     if region is not None:
         inside = region.mask(box)
+        is_polygon = not bool(inside.all())
         pixels = np.where(inside, pixels, np.nan)
         fill = None if fill is None else fill.within(inside)
     usable = int(np.count_nonzero(np.isfinite(pixels)))
@@ -154,7 +161,9 @@ def read_region(
     gsd = source.gsd(box.row + box.height / 2, box.col + box.width / 2)
     if gsd_m is not None:
         gsd = Gsd.given(gsd_m)
-    return RegionPixels(pixels, box, source.saturation_level, gsd, source, fill)
+    return RegionPixels(
+        pixels, box, source.saturation_level, gsd, source, fill, is_polygon=is_polygon
+    )
 
 
 def read_data(image: Image, box: Box) -> tuple[Floats, Fill | None]:
