@@ -18,7 +18,7 @@
     ├── ModelError          (ValueError)  a sensor or a scene is described in contradiction
     ├── ArchiveError        (OSError)     an archive is missing, of another program, not reachable,
     │                                     or cannot be written
-    └── WorkerError         (RuntimeError)  a process that worked for this one was killed
+    └── WorkerError         (OSError)     a process that worked for this one was killed
 
 Every message names what was asked, what was found and what to do. Every class is also
 the builtin that fits, so that code which does not import acutance can catch it.
@@ -122,5 +122,5 @@ class ArchiveError(AcutanceError, OSError):
     """An archive is missing, of another program, not reachable, or cannot be written."""
 
 
-class WorkerError(AcutanceError, RuntimeError):
+class WorkerError(AcutanceError, OSError):
     """A process that worked for this one was killed, most likely for want of memory."""
