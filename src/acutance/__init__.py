@@ -29,6 +29,7 @@ from acutance.errors import (
     RegionError,
     SupportError,
     TargetError,
+    WorkerError,
 )
 
 if TYPE_CHECKING:
@@ -263,6 +264,7 @@ __all__ = [
     "TargetError",
     "TargetResult",
     "Verdict",
+    "WorkerError",
     "__version__",
     "archive",
     "batch",

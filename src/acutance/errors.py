@@ -16,8 +16,9 @@
     ├── OptionError         (ValueError)  an option has a value out of its range
     │   └── NothingSelectedError          the filters of an archive let no measurement pass
     ├── ModelError          (ValueError)  a sensor or a scene is described in contradiction
-    └── ArchiveError        (OSError)     an archive is missing, of another program, not reachable,
-                                          or cannot be written
+    ├── ArchiveError        (OSError)     an archive is missing, of another program, not reachable,
+    │                                     or cannot be written
+    └── WorkerError         (OSError)     a process that worked for this one was killed
 
 Every message names what was asked, what was found and what to do. Every class is also
 the builtin that fits, so that code which does not import acutance can catch it.
@@ -43,6 +44,7 @@ __all__ = [
     "RegionError",
     "SupportError",
     "TargetError",
+    "WorkerError",
 ]
 
 
@@ -118,3 +120,7 @@ class ModelError(AcutanceError, ValueError):
 
 class ArchiveError(AcutanceError, OSError):
     """An archive is missing, of another program, not reachable, or cannot be written."""
+
+
+class WorkerError(AcutanceError, OSError):
+    """A process that worked for this one was killed, most likely for want of memory."""

@@ -18,7 +18,14 @@ from acutance.batch import BatchPlan
 from acutance.batch.image_list import content_of
 from acutance.batch.plan import StatedOfImages
 from acutance.batch.reason_words import in_words, words_of
-from acutance.errors import ArchiveError, FewEdgesError, NoEdgeError, OptionError, PhaseError
+from acutance.errors import (
+    ArchiveError,
+    FewEdgesError,
+    NoEdgeError,
+    OptionError,
+    PhaseError,
+    WorkerError,
+)
 from acutance.geometry import Line
 
 
@@ -527,6 +534,18 @@ def test_killed_processes_of_a_scene_are_no_rejection(tmp_path, run, rows, monke
     ac.raster.write_geotiff(path, np.ones((40, 40), np.float32), gsd_m=0.5)
     monkeypatch.setattr("acutance.scan.scan_scene", broken)
     with pytest.raises(BrokenProcessPool):
+        run(path, targets=survey(feature("scene", "scene", None, None)), workers=2)
+    assert len(rows()[1]) == 0
+
+
+def test_killed_processes_of_a_scene_end_the_batch_in_words(tmp_path, run, rows, monkeypatch):
+    def killed(*_, **__):
+        raise WorkerError("a worker process was killed")
+
+    path = tmp_path / "scene.tif"
+    ac.raster.write_geotiff(path, np.ones((40, 40), np.float32), gsd_m=0.5)
+    monkeypatch.setattr("acutance.scan.scan_scene", killed)
+    with pytest.raises(WorkerError):
         run(path, targets=survey(feature("scene", "scene", None, None)), workers=2)
     assert len(rows()[1]) == 0
 

@@ -5,6 +5,7 @@ import time
 
 import pytest
 
+from acutance.errors import AcutanceError, WorkerError
 from acutance.execution import results_in_turn, run_tasks
 
 
@@ -140,3 +141,27 @@ def test_a_task_that_takes_longer_than_a_user_waits_is_left(tmp_path):
     found = {one.name for one in tmp_path.iterdir()}
     # The process that failed may take another task before it is told to stop.
     assert {"begun 0", "begun 1"} <= found <= {"begun 0", "begun 1", "begun 2"}
+
+
+def killed(task):
+    """Ends every process but that of the test, which waits for it."""
+    here, begun = task
+    if os.getpid() != here:
+        begun.touch()
+        os._exit(1)
+    until = time.monotonic() + 60
+    while not begun.exists() and time.monotonic() < until:
+        time.sleep(0.01)
+
+
+@pytest.mark.parametrize("all_elsewhere", [True, False])
+def test_a_killed_process_is_an_error_that_says_what_to_do(tmp_path, all_elsewhere):
+    tasks = [(os.getpid(), tmp_path / "begun")] * 100
+    words = r"memory: use fewer .* goes on where it was"
+    with pytest.raises(WorkerError, match=words) as found:
+        _ = (
+            run_tasks(killed, tasks, lambda place, result: None, workers=2)
+            if all_elsewhere
+            else list(results_in_turn(killed, tasks, workers=2))
+        )
+    assert isinstance(found.value, AcutanceError)

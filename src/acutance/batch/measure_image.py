@@ -19,7 +19,7 @@ from acutance.batch.reason_words import UNREADABLE, words_of
 from acutance.batch.row_key import Reading, day_of, row_key, unreadable_key
 from acutance.batch.selected_bands import Band, selected
 from acutance.batch.summary import NO_FILE
-from acutance.errors import AcutanceError, ImageError, OptionError, RegionError
+from acutance.errors import AcutanceError, ImageError, OptionError, RegionError, WorkerError
 from acutance.execution import interruptible, is_ending
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Box, Gsd, Image, open_bands
@@ -252,11 +252,11 @@ def _row(
         return {"record": with_survey_distance(record, placed)}, _processor_s() - begin
     except NotHereError as error:
         rejected = _rejected(error.stage, str(error), error.why, chosen, image)
-    except AcutanceError as error:
-        rejected = _rejected(_stage(error), str(error), words_of(error), chosen, image)
-    except BrokenExecutor:
+    except (BrokenExecutor, WorkerError):
         # The processes of a scene were killed: that says nothing about the image.
         raise
+    except AcutanceError as error:
+        rejected = _rejected(_stage(error), str(error), words_of(error), chosen, image)
     except Exception as error:  # one target that fails must not end a batch of thousands
         reason = f"the measurement failed, {type(error).__name__}: {str(error)[:200]}"
         rejected = _rejected("fit", reason, words_of(error), chosen, image)

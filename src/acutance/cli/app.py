@@ -41,6 +41,7 @@ from acutance.cli.terminal import (
     EXIT_CODES,
     NOTHING_MEASURED,
     fail,
+    replace_what_streams_lack,
     say,
     stop,
     stop_printing,
@@ -216,6 +217,7 @@ def run() -> None:
     if sys.stdout is None:
         say("acutance: standard output is closed: send the result to a file")
         sys.exit(BAD_USAGE)
+    replace_what_streams_lack()
     # A third of a second, for memory that the system takes back anyway.
     atexit.register(gc.freeze)
     app(prog_name="acutance")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import shlex
 import sys
@@ -19,6 +20,7 @@ __all__ = [
     "NOTHING_MEASURED",
     "command_line",
     "fail",
+    "replace_what_streams_lack",
     "say",
     "stop",
     "stop_printing",
@@ -34,6 +36,16 @@ EXIT_CODES = (
     "Exit codes: 0 measured, 2 bad usage or input, 3 measured but a check failed under --strict, "
     "4 nothing there that can be measured, 130 interrupted."
 )
+
+
+def replace_what_streams_lack() -> None:
+    """Print characters that the terminal's encoding has not as question marks.
+
+    A result is not lost for a dash; halves of characters in names have no encoding at all.
+    """
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
 
 
 def say(message: str) -> None:

@@ -12,6 +12,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from itertools import islice
@@ -19,7 +20,7 @@ from multiprocessing import get_context, parent_process
 from multiprocessing.connection import Connection
 from typing import Generic, TypeVar
 
-from acutance.errors import OptionError
+from acutance.errors import OptionError, WorkerError
 from acutance.execution.interrupts import interruptible
 
 __all__ = ["is_ending", "require_workers", "results_in_turn", "run_tasks"]
@@ -33,6 +34,12 @@ _CHUNKS_PER_WORKER = 8
 _MAX_CHUNK = 8
 _GRACE_S = 2.0
 """For the tasks in work when a run is ended."""
+_KILLED = (
+    "a worker process was killed, most likely for want of memory: use fewer (--workers, workers=). "
+    "Where results are kept as they come (--keep, --out FOLDER, the archive of a batch) the same "
+    "command goes on where it was. A script of your own has to guard its start by "
+    'if __name__ == "__main__"'
+)
 _WAITING_PER_WORKER = 16
 """Tasks that are handed out before the first of them is waited for."""
 
@@ -77,6 +84,11 @@ def run_tasks(
     chunk : int, optional
         Tasks that a process is handed at once: 1 of long tasks, so that few occupy all processes.
         Without it their number decides.
+
+    Raises
+    ------
+    WorkerError
+        If one of the processes was killed.
     """
     used = min(workers or os.cpu_count() or 1, len(tasks))
     if used > 1:
@@ -126,7 +138,13 @@ def _run_in_processes(
 
 @contextmanager
 def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
-    """A pool of processes on one core each, which begin no further task once a run has failed."""
+    """A pool of processes on one core each, which begin no further task once a run has failed.
+
+    Raises
+    ------
+    WorkerError
+        If one of them was killed.
+    """
     # Fresh processes read the number of threads when they load the libraries.
     context = get_context("spawn")
     # Its end is the sign to stop: nothing that a killed process could hold locked.
@@ -141,9 +159,12 @@ def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
     ):
         try:
             yield pool
-        except BaseException:
+        except BaseException as error:
             held.close()
             pool.shutdown(cancel_futures=True)
+            # The library's words tell neither why it happens nor what to do.
+            if isinstance(error, BrokenProcessPool):
+                raise WorkerError(_KILLED) from error
             raise
 
 
@@ -162,6 +183,11 @@ def results_in_turn(
         As of `run_tasks`.
     tasks : iterable
     workers : int, optional
+        As of `run_tasks`.
+
+    Raises
+    ------
+    WorkerError
         As of `run_tasks`.
     """
     if workers < 2:

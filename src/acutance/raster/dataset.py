@@ -5,6 +5,7 @@ Loaded when the first such file is opened: a plain array needs no GDAL.
 
 from __future__ import annotations
 
+import os
 import threading
 import warnings
 from collections.abc import Iterator
@@ -169,6 +170,10 @@ def read_in_our_words(path: str) -> Iterator[None]:
     except (RasterioError, CPLE_BaseError) as error:
         reason = str(error.__cause__ or error)
         raise ImageError(f"{path} cannot be read ({reason}): {_advice(path)}") from error
+    except UnicodeEncodeError as error:
+        # Linux keeps names as bytes, of any encoding; GDAL takes text alone.
+        shown = os.fsencode(path).decode("utf-8", "replace")
+        raise ImageError(f"the name {shown} is no UTF-8: rename the file") from error
 
 
 def _advice(path: str) -> str:

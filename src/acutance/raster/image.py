@@ -81,6 +81,8 @@ class Image(ShortRepr):
         If true, fill that is not declared is not looked for: see `acutance.raster.Fill`.
     band_name : str or None
         As the file or a document beside it states it.
+    stated_nodata : float or None
+        The nodata value that was stated when the file was opened.
     """
 
     path: str | None
@@ -97,6 +99,7 @@ class Image(ShortRepr):
     declared_gsd: Gsd | None = None
     every_value_is_data: bool = False
     band_name: str | None = None
+    stated_nodata: float | None = None
 
     def __post_init__(self) -> None:
         if self.along_track not in ("x", "y"):

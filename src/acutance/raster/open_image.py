@@ -105,7 +105,12 @@ def open_unnamed(
         from acutance.raster.dataset import open_dataset
 
         opened = open_dataset(name, band, gsd, nodata)
-    opened = replace(opened, along_track=along_track, every_value_is_data=is_nan(nodata))
+    opened = replace(
+        opened,
+        along_track=along_track,
+        every_value_is_data=is_nan(nodata),
+        stated_nodata=None if nodata is None else float(nodata),
+    )
     return opened.linearized(linearize)
 
 

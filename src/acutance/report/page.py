@@ -257,7 +257,7 @@ def _target_sections(
         Section("Means", tables=(means_headline(result),), side_by_side=True),
         *_failed_section(result),
         *map(Section.of_table, target_tables(result)),
-        _with_command(last, command or _command(measurements[0])),
+        _with_command(last, command or _command_of_all(result)),
     )
 
 
@@ -284,6 +284,7 @@ def _command(measurement: Any, compared: Sequence[str] = ()) -> str | None:
         image.path is None
         or image.linearized is not None
         or measurement.kind not in ("edge", "pulse")
+        or not _can_be_typed(measurement)
     ):
         return None
     words = ["acutance", measurement.kind, image.path, "--roi", ",".join(map(str, image.roi))]
@@ -291,6 +292,8 @@ def _command(measurement: Any, compared: Sequence[str] = ()) -> str | None:
         words += ["--band", str(image.band)]
     if image.gsd_m is not None:
         words += ["--gsd", format_number(image.gsd_m, 8)]
+    elif image.pixel_gsd_m is not None:
+        words += ["--gsd", ",".join(format_number(side_m, 8) for side_m in image.pixel_gsd_m)]
     if image.along_track != "y":
         words += ["--along-track", image.along_track]
     if measurement.stated_width_px is not None and measurement.width_px is not None:
@@ -299,9 +302,39 @@ def _command(measurement: Any, compared: Sequence[str] = ()) -> str | None:
     words += _stated_words(measurement.options)
     words += ["--method", measurement.method]
     words += ["--compare", ",".join(dict.fromkeys(compared))] if compared else []
-    if measurement.response.rer_centre != "half":
-        words += ["--rer-centre", measurement.response.rer_centre]
+    words += _rer_centre_words(measurement, compared)
+    if image.stated_nodata is not None:
+        words += ["--nodata", f"{image.stated_nodata:.17g}"]
+    if not measurement.options.get("robust", True) and measurement.method == "spline":
+        words += ["--no-robust"]
+    for name, limit in (measurement.options.get("limits") or {}).items():
+        words += ["--limit", f"{name}={limit:.12g}"]
     return shlex.join(words)
+
+
+def _command_of_all(result: TargetResult[Any]) -> str | None:
+    """The same of all edges of a region."""
+    first, *others = result.measurements
+    if first.kind != "edge" or any(one.image != first.image for one in others):
+        return None
+    command = _command(first)
+    return command and f"{command} --all"
+
+
+def _can_be_typed(measurement: Any) -> bool:
+    """Whether the region and the options of a measurement can be written on a command line."""
+    # Options of a published method are for Python alone.
+    return not measurement.image.is_polygon and not measurement.options.get("method_options")
+
+
+def _rer_centre_words(measurement: Any, compared: Sequence[str]) -> list[str]:
+    """The centre of the RER, where one of the methods has another of its own."""
+    centre = measurement.response.rer_centre
+    methods = [measurement.method]
+    if measurement.options.get("rer_centre") is not None:
+        methods += compared
+    own = ("peak" if method == "kompsat-2014" else "half" for method in methods)
+    return ["--rer-centre", centre] if any(one != centre for one in own) else []
 
 
 def _stated_words(options: Mapping[str, Any]) -> list[str]:

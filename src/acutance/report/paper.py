@@ -40,6 +40,7 @@ INK, FAINT, SHADE = "#1b2530", "#66717d", "#eceff2"
 NAME_WITH_ROOM = 40
 """Characters of a file's name that have room in the title of a page 13 inches wide."""
 
+_NOT_IN_XML = bytes(set(range(32)) - set(b"\t\n\r"))
 FIGURE_ENDINGS = (".png", ".svg", ".pdf")
 
 _STYLE: dict[Any, Any] = {
@@ -128,7 +129,9 @@ def figure_bytes(figure: Figure, ending: str, dpi: int = 150) -> bytes:
     buffer = io.BytesIO()
     with styled():
         figure.savefig(buffer, format=ending[1:], dpi=dpi, metadata=dates.get(ending))
-    return buffer.getvalue()
+    content = buffer.getvalue()
+    # XML has no control characters, not even escaped; names of files may.
+    return content.translate(None, _NOT_IN_XML) if ending == ".svg" else content
 
 
 def save_figure(figure: Figure, path: str | Path, dpi: int = 150) -> None:

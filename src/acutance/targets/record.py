@@ -12,7 +12,7 @@ import math
 import pickle
 import zlib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 from functools import cached_property
 from typing import Any
@@ -79,6 +79,10 @@ class ImageInfo:
         Bands of the file; ``None`` where it is not known.
     region : str or None
         What the region is called, where it has a name.
+    is_polygon : bool
+        Whether the region leaves out pixels of `roi`.
+    stated_nodata : float or None
+        The nodata value that was stated when the image was opened.
     """
 
     path: str | None = None
@@ -92,6 +96,10 @@ class ImageInfo:
     band_name: str | None = None
     band_count: int | None = None
     region: str | None = None
+
+    # Two facts for the command that repeats a measurement, which documents do not have.
+    is_polygon: bool = field(default=False, compare=False)
+    stated_nodata: float | None = field(default=None, compare=False)
 
     @property
     def band_label(self) -> str:

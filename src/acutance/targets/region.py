@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -62,6 +62,8 @@ class RegionPixels:
         Values at which the image around the region was found to be clipped.
     name : str
         Of the region, where it has one.
+    is_polygon : bool
+        Whether the region leaves out pixels of the box.
     """
 
     pixels: Floats
@@ -72,11 +74,13 @@ class RegionPixels:
     fill: Fill | None = None
     clipped: ClipLevels = NOT_CLIPPED
     name: str = ""
+    is_polygon: bool = False
 
     @cached_property
     def info(self) -> ImageInfo:
         """What a measurement records of its image: the same for every kind of target."""
-        return image_info(self.image, self.box, self.gsd, self.name)
+        found = image_info(self.image, self.box, self.gsd, self.name)
+        return replace(found, is_polygon=self.is_polygon)
 
     @cached_property
     def traces(self) -> ProcessingTraces:
@@ -95,6 +99,7 @@ def image_info(image: Image, box: Box, gsd: Gsd | None, region: str = "") -> Ima
         image.band_name,
         None if image.path is None else image.band_count,
         region or None,
+        stated_nodata=image.stated_nodata,
     )  # fmt: skip
 
 
@@ -143,8 +148,10 @@ def read_region(
             f"{_MIN_SIDE_PX} both ways"
         )
     pixels, fill = read_data(source, box)
+    is_polygon = False
     if region is not None:
         inside = region.mask(box)
+        is_polygon = not bool(inside.all())
         pixels = np.where(inside, pixels, np.nan)
         fill = None if fill is None else fill.within(inside)
     usable = int(np.count_nonzero(np.isfinite(pixels)))
@@ -162,7 +169,7 @@ def read_region(
         gsd = Gsd.given(gsd_m)
     return RegionPixels(
         pixels, box, source.saturation_level, gsd, source, fill,
-        name="" if region is None else region.name,
+        name="" if region is None else region.name, is_polygon=is_polygon,
     )  # fmt: skip
 
 
