@@ -9,6 +9,7 @@ import acutance as ac
 from acutance import optics, simulate
 from acutance.targets import ToleranceLimit
 from acutance.targets.conformity import conformity_word, written_probability
+from acutance.targets.uncertainty_budget import systematic_share
 
 SENSOR = ac.Sensor([optics.Gaussian(0.45), optics.Detector(0.95)])
 
@@ -34,11 +35,24 @@ def test_a_number_far_from_its_limit_is_told(edge):
 
 def test_one_near_its_limit_is_not_and_says_how_many_would_tell(edge):
     number = edge.mtf_nyquist
-    (answer,) = edge.conformity(f"mtf_nyquist >= {number.value - 0.5 * number.std:.6f}")
+    (answer,) = edge.conformity(f"mtf_nyquist >= {number.value - 0.9 * number.std:.6f}")
     assert answer.word == "cannot be told yet"
-    assert answer.probability == pytest.approx(0.691, abs=0.002)
-    # A single one is told at 1.645 deviations: (1.645 / 0.5)^2 of them at half of one.
-    assert "about 11 measurements" in answer.summary
+    assert answer.probability == pytest.approx(0.816, abs=0.002)
+    # A single one is told at 1.645 deviations. What the prior adds, a mean of all has in full.
+    share = systematic_share(edge.budget, "across", "mtf_nyquist")
+    needed = (0.9 / 1.6449) ** 2
+    assert 0.01 < share < 0.9 * needed
+    assert f"about {math.ceil((1 - share) / (needed - share))} measurements" in answer.summary
+
+
+def test_what_is_left_to_the_prior_is_not_told_by_more_measurements(edge):
+    """49 edges were said to tell, and of sixty the mean was no better than of ten."""
+    number = edge.mtf_nyquist
+    share = systematic_share(edge.budget, "across", "mtf_nyquist")
+    needed = 0.9 * math.sqrt(share) * number.std
+    (answer,) = edge.conformity(f"mtf_nyquist >= {number.value - 1.6449 * needed:.8f}")
+    assert "would not tell: shape left to the prior leaves" in answer.summary
+    assert "a longer target, or one of more contrast" in answer.summary
 
 
 @pytest.mark.parametrize("several", [False, True])
@@ -65,10 +79,12 @@ def test_what_was_stated_takes_more_measurements():
     image, _ = simulate.edge(SENSOR, angle_deg=6, snr=100, rng=np.random.default_rng(3))
     found = ac.measure_edge(image, options=options)
     number = found.mtf_nyquist
-    share = next(r.share["mtf_nyquist"] for r in found.budget if r.name == "level_uncertainty")
+    stated = next(r.share["mtf_nyquist"] for r in found.budget if r.name == "level_uncertainty")
+    share = systematic_share(found.budget, "across", "mtf_nyquist")
     needed = 0.5 * number.std
     (answer,) = found.conformity(f"mtf_nyquist >= {number.value - 1.6449 * needed:.8f}")
-    assert 0.05 < share < 0.2
+    assert 0.05 < stated < 0.2
+    assert stated < share < 0.25
     count = math.ceil((1 - share) / (0.25 - share))
     assert count > 4
     assert f"about {count} measurements" in answer.summary

@@ -20,7 +20,12 @@ from acutance.curves.metric_bounds import limit_fault
 from acutance.errors import OptionError
 from acutance.targets.recorded_direction import RecordedDirection
 from acutance.targets.target_result import TargetResult
-from acutance.targets.uncertainty_budget import STATED_TERMS, TERMS, systematic_share
+from acutance.targets.uncertainty_budget import (
+    STATED_TERMS,
+    SYSTEMATIC_TERMS,
+    TERMS,
+    systematic_share,
+)
 
 if TYPE_CHECKING:
     from acutance.targets.measurement import Measurement
@@ -306,24 +311,31 @@ def _what_would_tell(
     needed = abs(number.value - limit.limit) / normal_quantile(2 * limit.confidence - 1)
     if number.std > math.sqrt(_MOST) * needed:
         return "the value is too near the limit to be told by more measurements"
-    stated = min(_stated_std(parts, orientation, limit.metric), number.std)
-    if stated >= needed:
-        return (
-            f"more measurements of this target would not tell: {_stated_causes(parts, orientation)}"
-            f" leave a standard deviation of {stated:.2g} to all of them, and {needed:.2g} would "
-            "tell; state it with less uncertainty, or measure another target"
+    shared = min(_shared_std(parts, orientation, limit.metric), number.std)
+    if shared >= needed:
+        causes = _shared_causes(parts, orientation)
+        words = " and ".join(TERMS[name].label for name in causes) or "they"
+        leave = "leaves" if len(causes) == 1 else "leave"
+        advice = (
+            "state it with less uncertainty, or measure another target"
+            if STATED_TERMS.issuperset(causes[:1])
+            else "a longer target, or one of more contrast, has less of it"
         )
-    # What was stated remains, the rest falls with the square root of their number.
-    count = math.ceil((number.std**2 - stated**2) / (needed**2 - stated**2))
+        return (
+            f"more measurements of this target would not tell: {words} {leave} a standard "
+            f"deviation of {shared:.2g} to all of them, and {needed:.2g} would tell; {advice}"
+        )
+    # What they share remains, the rest falls with the square root of their number.
+    count = math.ceil((number.std**2 - shared**2) / (needed**2 - shared**2))
     if count > _MOST:
         return "the value is too near the limit to be told by more measurements"
     return f"about {count} measurements like this one would tell, as far as their errors differ"
 
 
-def _stated_std(parts: Sequence[Measurement | Record], orientation: str, metric: str) -> float:
-    """What was stated of the target gives this deviation to a number, and to a mean of it."""
+def _shared_std(parts: Sequence[Measurement | Record], orientation: str, metric: str) -> float:
+    """What all measurements share gives this deviation to a number, and to a mean of it."""
     stds = [
-        number.std * math.sqrt(systematic_share(one.budget, orientation, metric, STATED_TERMS))
+        number.std * math.sqrt(systematic_share(one.budget, orientation, metric))
         for one in parts
         for name, response in one.directions.items()
         if name == orientation and (number := getattr(response, metric)) is not None
@@ -331,13 +343,13 @@ def _stated_std(parts: Sequence[Measurement | Record], orientation: str, metric:
     return sum(stds) / len(stds) if stds else 0.0
 
 
-def _stated_causes(parts: Sequence[Measurement | Record], orientation: str) -> str:
-    """The stated parts in the words of the budget, the largest first."""
+def _shared_causes(parts: Sequence[Measurement | Record], orientation: str) -> list[str]:
+    """The terms that all measurements share, the largest first."""
     shares = {
         name: max(
             systematic_share(one.budget, orientation, "", frozenset((name,))) for one in parts
         )
-        for name in STATED_TERMS
+        for name in SYSTEMATIC_TERMS
     }
     ranked = sorted(shares, key=lambda name: (-shares[name], name))
-    return " and ".join(TERMS[name].label for name in ranked if shares[name] > _NAMED) or "they"
+    return [name for name in ranked if shares[name] > _NAMED]
