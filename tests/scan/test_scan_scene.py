@@ -215,12 +215,13 @@ def test_a_field_of_view_that_is_softer_on_one_side():
     assert {check.name: check for check in scene.checks}["field_change"].value > 0.03
 
 
-def test_a_decimated_scene_is_sharper_than_any_pixel(ideal):
+def test_a_decimated_scene_is_sharper_than_any_pixel(ideal, few_forms):
     fine, _ = simulate.landscape(
         ac.Sensor([ac.optics.Detector(0.5), ac.optics.Gaussian(0.15)]), shape=(700, 900),
         options=bare_ground(soft=0.0), rng=np.random.default_rng(3),
     )  # fmt: skip
-    scene = ac.scan_scene(fine)
+    with few_forms():
+        scene = ac.scan_scene(fine)
     assert "full_pixel" in {check.name for check in scene.failed_checks}
     assert scene.verdict.word == "doubtful"
     _, _, plain = ideal
@@ -244,12 +245,13 @@ def test_more_light_in_a_halo_than_optics_scatter_is_said(share, is_said):
     assert check.severity == "caution"
 
 
-def test_where_nearly_all_edges_contradict_a_sensor_the_scan_is_doubtful(ideal):
+def test_where_nearly_all_edges_contradict_a_sensor_the_scan_is_doubtful(ideal, few_forms):
     """A landscape decimated four times without a filter: of 275 edges 20 pass, by chance."""
     fine, _ = simulate.landscape(
         SENSOR, shape=(2400, 2400), snr=60, rng=np.random.default_rng((0, 7))
     )
-    scene = ac.scan_scene(fine[::4, ::4])
+    with few_forms():
+        scene = ac.scan_scene(fine[::4, ::4])
     check = share_of(scene)
     trusted = np.isin(scene.edges.verdict, ["good", "usable"]).sum()
     measured = (scene.edges.verdict != "rejected").sum()

@@ -79,8 +79,7 @@ def test_an_image_decimated_without_averaging_is_sharper_than_any_pixel(step):
     found = decimated.mtf_nyquist
     assert check.value == pytest.approx(found.value - 2 * found.std)
     assert (
-        f"is {found}, surely (by 2 standard deviations) above {check.value:.2f};"
-        in check.message
+        f"is {found}, surely (by 2 standard deviations) above {check.value:.2f};" in check.message
     )
 
 
