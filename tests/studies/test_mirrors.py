@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+import acutance as ac
 from acutance import optics
 from acutance.studies import MirrorPlanOptions, lay_out_mirrors, plan_mirrors
 from acutance.studies.mirrors import place_errors_px
@@ -84,3 +85,16 @@ def test_a_mirror_left_out_of_the_fit_leaves_the_others_in_place():
     assert place_errors_px(moved[[0, 3]], places) == pytest.approx(
         np.array([[-0.015, 0.0], [0.015, 0.0]])
     )
+
+
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        ({"arrangement": "square", "columns": 3}, "columns is 3, and the arrangement is a square"),
+        ({"count": 9, "columns": 4}, "9 mirrors in equal columns of 3 fill 3 of them"),
+    ],
+)
+def test_columns_that_are_not_laid_out_are_refused(asked, message):
+    with pytest.raises(ac.OptionError, match=message):
+        MirrorPlanOptions(sensor=SENSOR, **asked)
+    assert MirrorPlanOptions(sensor=SENSOR, count=10, columns=4).column_count == 4

@@ -119,6 +119,24 @@ class MirrorPlanOptions:
         for name, (value, low, high) in bounds.items():
             if not low <= value <= high:
                 raise OptionError(f"{name} is {value:g}: it has to be {low:g} to {high:g}")
+        self._require_columns()
+
+    def _require_columns(self) -> None:
+        """Refuse columns of a square, and more of them than so many mirrors fill."""
+        if self.columns is None:
+            return
+        if self.arrangement == "square":
+            raise OptionError(
+                f"columns is {self.columns}, and the arrangement is a square, whose sides are "
+                "equal: leave one of them out"
+            )
+        rows = math.ceil(self.count / self.columns)
+        filled = math.ceil(self.count / rows)
+        if filled < self.columns:
+            raise OptionError(
+                f"columns is {self.columns}: {self.count} mirrors in equal columns of {rows} fill "
+                f"{filled} of them; give {filled} columns, or more mirrors"
+            )
 
     @property
     def column_count(self) -> int:
