@@ -5,10 +5,11 @@ import shutil
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
 from acutance.errors import ImageError
-from acutance.raster import open_image
+from acutance.raster import open_image, write_geotiff
 
 
 def test_a_name_that_is_no_utf8_is_refused_in_words(edge_image, tmp_path):
@@ -35,3 +36,13 @@ def test_characters_that_streams_lack_are_replaced():
         )
         assert found.stdout.rstrip().endswith(b"y ?")
         assert found.stderr == found.stdout
+
+
+# rasterio's own log stumbles over the same bytes.
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+def test_a_damaged_document_beside_an_image_is_named(tmp_path):
+    path = tmp_path / "e.tif"
+    write_geotiff(path, np.zeros((20, 20), np.uint16))
+    (tmp_path / "e.xml").write_bytes(b"<broken\xff\xfe\0")
+    with pytest.raises(ImageError, match=r"beside it, such as e\.xml, may be damaged"):
+        open_image(path)

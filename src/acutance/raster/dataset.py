@@ -174,6 +174,12 @@ def read_in_our_words(path: str) -> Iterator[None]:
         # Linux keeps names as bytes, of any encoding; GDAL takes text alone.
         shown = os.fsencode(path).decode("utf-8", "replace")
         raise ImageError(f"the name {shown} is no UTF-8: rename the file") from error
+    except UnicodeDecodeError as error:
+        # GDAL reads documents of the same name, too, and quotes what it does not understand.
+        raise ImageError(
+            f"{path} cannot be read (GDAL's words of it are no UTF-8): a document of metadata "
+            f"beside it, such as {Path(path).stem}.xml, may be damaged; move it away, or mend it"
+        ) from error
 
 
 def _advice(path: str) -> str:
