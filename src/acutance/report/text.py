@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -117,8 +118,9 @@ def _target_text(result: TargetResult[Any], required: Required) -> str:
     measurements = result.measurements
     head = f"{count_edges(len(measurements))} measured, {len(result.rejected)} rejected"
     where = f"\n  {describe_image(measurements[0])}" if measurements else ""
+    failing = Counter(check.name for one in measurements for check in one.failed_checks)
     failed = [
-        f"  {name}, {'edges' if '), ' in edges else 'edge'} {edges}: {meaning}"
+        f"  {name}, {'edges' if failing[name] > 1 else 'edge'} {edges}: {meaning}"
         for name, edges, meaning in failed_by_check(measurements)
     ]
     return "\n\n".join(
