@@ -52,10 +52,10 @@ def image(
     PlanetScope, STAC item) and its tags. What none of them says stays empty; what they say
     differently is named.
     """
-    from acutance.raster import open_image
     from acutance.raster.metadata import read_statement
+    from acutance.raster.open_image import open_unnamed
 
-    found, pixels = read_statement(image, metadata), open_image(image)
+    found, pixels = read_statement(image, metadata), open_unnamed(image)
     if as_json:
         shape = {"band_count": pixels.band_count, "shape": list(pixels.shape),
                  "dtype": pixels.dtype}  # fmt: skip

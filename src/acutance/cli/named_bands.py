@@ -40,10 +40,10 @@ def numbers_of_bands(path: str, bands: Sequence[int | str]) -> list[int]:
     """
     if all(isinstance(one, int) for one in bands):
         return [int(one) for one in bands]
-    from acutance.raster import open_image
     from acutance.raster.metadata.read_statement import band_names
+    from acutance.raster.open_image import open_unnamed
 
-    first = open_image(path)
+    first = open_unnamed(path)
     names = band_names(first) or ()
     by_name = {name.casefold(): number for number, name in enumerate(names, start=1)}
     found = [one if isinstance(one, int) else by_name.get(one.casefold()) for one in bands]
