@@ -526,26 +526,17 @@ def test_a_scene_is_the_same_over_several_processes(tmp_path, run, few_forms):
     assert records[0].across.mtf_nyquist == records[1].across.mtf_nyquist
 
 
-def test_killed_processes_of_a_scene_are_no_rejection(tmp_path, run, rows, monkeypatch):
-    def broken(*_, **__):
-        raise BrokenProcessPool("killed")
-
-    path = tmp_path / "scene.tif"
-    ac.raster.write_geotiff(path, np.ones((40, 40), np.float32), gsd_m=0.5)
-    monkeypatch.setattr("acutance.scan.scan_scene", broken)
-    with pytest.raises(BrokenProcessPool):
-        run(path, targets=survey(feature("scene", "scene", None, None)), workers=2)
-    assert len(rows()[1]) == 0
-
-
-def test_killed_processes_of_a_scene_end_the_batch_in_words(tmp_path, run, rows, monkeypatch):
+@pytest.mark.parametrize(
+    "error", [BrokenProcessPool("killed"), WorkerError("a worker process was killed")]
+)
+def test_killed_processes_of_a_scene_are_no_rejection(tmp_path, run, rows, monkeypatch, error):
     def killed(*_, **__):
-        raise WorkerError("a worker process was killed")
+        raise error
 
     path = tmp_path / "scene.tif"
     ac.raster.write_geotiff(path, np.ones((40, 40), np.float32), gsd_m=0.5)
     monkeypatch.setattr("acutance.scan.scan_scene", killed)
-    with pytest.raises(WorkerError):
+    with pytest.raises(type(error)):
         run(path, targets=survey(feature("scene", "scene", None, None)), workers=2)
     assert len(rows()[1]) == 0
 
