@@ -47,10 +47,11 @@ class Measurements(Columns):
     (its file name), ``image_id`` (equal for measurements of one image), ``run``, ``verdict``,
     ``snr``, ``normal_deg`` (the direction of the numbers, from the column axis towards the row
     axis, -90 to 90; ``angle_deg`` is the same, as tables were first written), ``gsd_m`` (along the
-    direction), ``view_zenith_deg``,
-    ``sun_elevation_deg``, ``measured_at``, and every metric with its standard deviation
-    (``mtf_nyquist``, ``mtf_nyquist_std``, ...). Of the three main numbers also what of it does not
-    average out over images (``rer_systematic_std``, `acutance.archive.systematic`).
+    direction), ``gsd_row_m`` and ``gsd_col_m`` (the sides of the image's pixels, along a column and
+    along a row), ``view_zenith_deg``, ``sun_elevation_deg``, ``measured_at``, and every metric with
+    its standard deviation (``mtf_nyquist``, ``mtf_nyquist_std``, ...). Of the three main numbers
+    also what of it does not average out over images (``rer_systematic_std``,
+    `acutance.archive.systematic`).
 
     Parameters
     ----------
@@ -133,6 +134,8 @@ _MEASURED: tuple[tuple[str, Column[Any]], ...] = (
     ("normal_deg", directions.c.angle_deg),
     ("angle_deg", directions.c.angle_deg),
     ("gsd_m", directions.c.gsd_m),
+    ("gsd_row_m", images.c.gsd_row_m),
+    ("gsd_col_m", images.c.gsd_col_m),
     ("measured_at", measurements.c.measured_at),
     *((name, directions.c[name]) for name in (*metric_columns(), *systematic_columns())),
 )

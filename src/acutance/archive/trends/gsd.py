@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from acutance.archive.trends.series import Event, Series, moment_of
 from acutance.curves.grid import Floats
 
-__all__ = ["gsd_classes", "gsd_events", "gsd_range"]
+__all__ = ["SAME_GSD", "gsd_classes", "gsd_events", "gsd_range"]
 
-_SAME: Final = 0.02
+SAME_GSD: Final = 0.02
 """GSDs that differ by less are those of one product."""
 _MAX_CHANGES: Final = 3
 _OTHER_CLASS: Final = 1.4
@@ -53,13 +53,13 @@ def gsd_events(series: Series) -> tuple[tuple[Event, ...], tuple[str, ...]]:
         With dates and values.
     """
     found = gsd_range(series)
-    if found is None or found[1] <= found[0] * (1 + _SAME) or _is_in_metres(series.metric):
+    if found is None or found[1] <= found[0] * (1 + SAME_GSD) or _is_in_metres(series.metric):
         return (), ()
     assert series.gsd_m is not None
     known = np.isfinite(series.gsd_m)
     order = np.argsort(series.when[known], kind="stable")
     when, gsd_m = series.when[known][order], series.gsd_m[known][order]
-    is_other = np.abs(gsd_m[1:] / gsd_m[:-1] - 1) > _SAME
+    is_other = np.abs(gsd_m[1:] / gsd_m[:-1] - 1) > SAME_GSD
     changed = (1 + np.flatnonzero(is_other & (np.diff(when) > 0))).tolist()
     span = f"GSD runs from {found[0]:.3g} to {found[1]:.3g} m"
     if len(changed) > _MAX_CHANGES:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from acutance.archive.trends.measured_series import by_gsd, gsd_words
+from acutance.archive.trends.measured_series import by_gsd, gsd_words, pixel_side_m
 
 if TYPE_CHECKING:
     from acutance.archive.measurements import Measurements
@@ -27,6 +27,7 @@ def with_gsd_bands(rows: Measurements) -> Measurements:
     classes = by_gsd(rows, np.array([one is None for one in band.tolist()], bool))
     if len(classes) < 2:
         return rows
+    side_m = pixel_side_m(rows)
     for mask in classes:
-        band[mask] = gsd_words(rows["gsd_m"][mask])
+        band[mask] = gsd_words(side_m[mask])
     return replace(rows, columns={**rows.columns, "band": band})
