@@ -94,24 +94,35 @@ class Otf2d(ShortRepr):
         OptionError
             If the direction is no finite number.
         """
+        mtf = self.mtf(normal_deg)
+        freq = np.asarray(np.arange(round(PERIOD_PX * self.model.band_cpp) + 1) / PERIOD_PX)
+        esf, lsf, esf_factor, lsf_factor = _spread(freq, *self._slice(normal_deg, freq))
+        return Response(
+            Esf(DISTANCE_PX, esf, esf_factor),
+            Lsf(DISTANCE_PX, lsf, lsf_factor),
+            mtf,
+            gsd_m=None if self.gsd_m is None else gsd_along(self.gsd_m, normal_deg),
+        )
+
+    def mtf(self, normal_deg: float) -> Mtf:
+        """MTF along a direction, without the spread functions of `response`.
+
+        Parameters
+        ----------
+        normal_deg : float
+            From the column axis (0: across) towards the row axis (90: along).
+
+        Raises
+        ------
+        OptionError
+            If the direction is no finite number.
+        """
         if not (isinstance(normal_deg, Real) and math.isfinite(normal_deg)):
             raise OptionError(
                 f"the direction is {normal_deg!r:.80}: give a finite number of degrees, from the "
                 "column axis (0: across) towards the row axis (90: along)"
             )
-        freq = np.asarray(np.arange(round(PERIOD_PX * self.model.band_cpp) + 1) / PERIOD_PX)
-        otf, factor = self._slice(normal_deg, freq)
-        centroid = self._centroid(normal_deg)
-        turn = np.exp(2j * math.pi * freq * centroid)
-        esf, lsf, esf_factor, lsf_factor = _spread(freq, otf * turn, factor * turn[:, None])
-        shown, shown_factor = self._slice(normal_deg, FREQ_CPP)
-        turn = np.exp(2j * math.pi * FREQ_CPP * centroid)
-        return Response(
-            Esf(DISTANCE_PX, esf, esf_factor),
-            Lsf(DISTANCE_PX, lsf, lsf_factor),
-            Mtf(FREQ_CPP, shown * turn, shown_factor * turn[:, None]),
-            gsd_m=None if self.gsd_m is None else gsd_along(self.gsd_m, normal_deg),
-        )
+        return Mtf(FREQ_CPP, *self._slice(normal_deg, FREQ_CPP))
 
     def psf(self, half_width_px: float = 5.0, step_px: float = 0.1) -> tuple[Floats, Floats]:
         """Point spread function around its origin, pixel area included.
@@ -140,8 +151,10 @@ class Otf2d(ShortRepr):
         return distance, np.asarray((down @ plane @ across).real)
 
     def _slice(self, normal_deg: float, freq_cpp: Floats) -> tuple[Complexes, Complexes]:
+        """OTF along a direction, about the centroid, and the factor of its covariance."""
         u, v = _along(normal_deg, freq_cpp)
-        return self.model.otf(u, v), self.model.factor(u, v)
+        turn = np.exp(2j * math.pi * freq_cpp * self._centroid(normal_deg))
+        return self.model.otf(u, v) * turn, self.model.factor(u, v) * turn[:, None]
 
     def _centroid(self, normal_deg: float) -> float:
         """Centroid of the LSF, from the slope of the phase at zero frequency."""

@@ -8,7 +8,7 @@ from itertools import product
 
 import numpy as np
 
-from acutance.curves import Otf2d
+from acutance.curves import Mtf, Otf2d
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.raster import Box, Image
@@ -72,6 +72,7 @@ def check_scene(
     used = int(edges.used.sum())
     directions = np.unique(np.floor(fit.normal_deg / _DIRECTION_DEG)).size
     (ideal, ideal_std), (strange, _) = fit.kinds["ideal"], fit.kinds["strange"]
+    across, diagonal, along, other = mtfs = [transfer.mtf(deg) for deg in (0.0, 45.0, 90.0, 135.0)]
     return (
         answer(
             "edges_used", used,
@@ -101,13 +102,13 @@ def check_scene(
         ),
         _form_agrees(fit.agreement, limits),
         _halo_share(fit.otf, limits),
-        _rival(fit.rivals, transfer, limits),
+        _rival(fit.rivals, mtfs, limits),
         _parts_agree(fit.parts, limits),
-        _diagonals(transfer, limits),
-        _axes_differ(transfer, fit.parts, limits),
+        _diagonals(diagonal, other, limits),
+        _axes_differ(across, along, fit.parts, limits),
         _field_change(field, limits),
         full_pixel(
-            [transfer.response(deg).mtf_nyquist for deg in (0.0, 90.0)], limits, caution=_DECIMATED
+            [curve(NYQUIST_CPP) for curve in (across, along)], limits, caution=_DECIMATED
         ),
         stated_gsd(info, limits),
         *scene_processing_checks(*image, limits),
@@ -153,14 +154,13 @@ def _halo_share(sensor: CombinedOtf, limits: Limits) -> Check:
     return answer("halo_share", share, found, limits)
 
 
-def _rival(rivals: Sequence[Rival], transfer: Otf2d, limits: Limits) -> Check:
+def _rival(rivals: Sequence[Rival], mtfs: Sequence[Mtf], limits: Limits) -> Check:
     """By how much another sensor is less likely, in the log likelihood of the edges.
 
     One that lies within the deviations is no other.
     """
     freq = SLICE_FREQ_CPP[SLICE_FREQ_CPP <= NYQUIST_CPP]
-    curves = [transfer.response(deg).mtf for deg in (0.0, 45.0, 90.0, 135.0)]
-    std = float(np.sqrt(np.mean([curve.near(freq).std ** 2 for curve in curves])))
+    std = float(np.sqrt(np.mean([curve.near(freq).std ** 2 for curve in mtfs])))
     others = [one for one in rivals if one.apart > _SIGNIFICANT * std]
     if not others:
         return answer("rival", MAX_RATIO, "no other sensor was found to be likely", limits)
@@ -193,9 +193,8 @@ def _parts_agree(parts: PartsFit | None, limits: Limits) -> Check:
     return answer("parts_agree", share, found, limits)
 
 
-def _diagonals(transfer: Otf2d, limits: Limits) -> Check:
+def _diagonals(one: Mtf, other: Mtf, limits: Limits) -> Check:
     """How far the MTF along one diagonal surely differs from that along the other, relative."""
-    one, other = (transfer.response(deg).mtf for deg in (45.0, 135.0))
     both = [float(curve(NYQUIST_CPP)) for curve in (one, other)]
     std = float(np.linalg.norm(one.gradient(NYQUIST_CPP) - other.gradient(NYQUIST_CPP)))
     mean = max(0.5 * sum(both), 1e-9)
@@ -211,14 +210,13 @@ def _diagonals(transfer: Otf2d, limits: Limits) -> Check:
     return answer("diagonals", least, found, limits)
 
 
-def _axes_differ(transfer: Otf2d, parts: PartsFit | None, limits: Limits) -> Check:
+def _axes_differ(across: Mtf, along: Mtf, parts: PartsFit | None, limits: Limits) -> Check:
     """How far the larger of the MTFs across and along surely exceeds the other, relative to it.
 
     At Nyquist, or where both tell more. Borders of one direction that are all soft alike pass for a
     smear of the sensor; where parts of the scene were compared they would differ.
     """
     freq = SLICE_FREQ_CPP[SLICE_FREQ_CPP <= NYQUIST_CPP]
-    across, along = (transfer.response(deg).mtf for deg in (0.0, 90.0))
     mean = 0.5 * (across(freq).value + along(freq).value)
     at = float(freq[np.flatnonzero(mean >= _SEEN).max(initial=0)])
     one, other = (max(float(curve(at)), 1e-9) for curve in (across, along))

@@ -59,7 +59,7 @@ class ScenePlace(ShortRepr):
 
     def mtf_at(self, angle_deg: float) -> Mtf:
         """The MTF in any direction, from the column axis (0) towards the row axis (90)."""
-        return self.otf.response(angle_deg).mtf
+        return self.otf.mtf(angle_deg)
 
     def summary(self) -> str:
         """The place and the main numbers."""

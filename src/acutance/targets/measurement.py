@@ -150,7 +150,7 @@ class Measurement(HasResponse, HasDirections[Response], HasChecks):
         OptionError
             If the direction is no finite number.
         """
-        return self.response_at(angle_deg).mtf
+        return self.otf.mtf(angle_deg)
 
     def psf(self, half_width_px: float = 5.0, step_px: float = 0.1) -> tuple[Floats, Floats]:
         """Point spread function around its origin, pixel area included.

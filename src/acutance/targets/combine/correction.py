@@ -45,10 +45,10 @@ class Correction(ShortRepr):
 
     def directions_on(self, plane: Plane) -> Complexes:
         """Change of the OTF for a unit of every direction, (n, m): exactly 0 at zero frequency."""
-        p = np.array(self.parameters)
-        size = np.abs(self.form.otf_on(p, plane))
+        factors = self.form.factors_on(np.array(self.parameters), plane)
+        size = np.abs(factors.prod(axis=0))
         # Sharpening multiplies the blur by a gain: the blur is the detector's at most.
-        blurred = np.minimum(size, np.abs(self.form.detector_on(p, plane)))
+        blurred = np.minimum(size, np.abs(factors[-1]))
         reach = -math.e * size * np.log(np.maximum(blurred, 1e-30))
         even, odd = (near @ root for near, root in zip(plane.processes, _roots(), strict=True))
         return np.asarray(reach[:, None] * np.concatenate([even, 1j * odd], axis=1))

@@ -14,6 +14,7 @@ from acutance.curves.grid import Floats
 from acutance.targets.combine.correction import Correction
 from acutance.targets.combine.curves import ChiSquare, OtfSamples, WhitenedCurves
 from acutance.targets.combine.form_fit import FIRST_STEPS, FormFit, Start, fit_forms, likely_starts
+from acutance.targets.combine.forms_on_plane import FormsOnPlane
 from acutance.targets.combine.lit_curves import LitCurves
 from acutance.targets.combine.sensor_forms import FORMS, SensorForm
 from acutance.targets.combine.weighted_forms import CombinedOtf, WeightedForm
@@ -193,8 +194,7 @@ def _chi_squares(
     that are judged: a prior makes errors in other directions smaller than their deviations.
     """
     best = forms[0]
-    mean = sum(one.weight * one.otf_on(data.plane) for one in forms)
-    near = LitCurves(data, np.asarray(mean))
+    near = LitCurves(data, FormsOnPlane(forms, data.plane).mean)
     residual = near.residual
     slopes = near.of(best.slopes_on(data.plane).T).T
     inverse = np.linalg.inv(slopes.T @ slopes + np.diag(best.prior_std**-2.0))

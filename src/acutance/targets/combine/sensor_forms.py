@@ -79,11 +79,11 @@ class SensorForm:
 
     def otf_on(self, p: Floats, plane: Plane) -> Complexes:
         """OTF (n,) at places of the plane."""
-        return np.asarray(_alone(self).factors(p[None], plane)[:, 0].prod(axis=0))
+        return np.asarray(self.factors_on(p, plane).prod(axis=0))
 
-    def detector_on(self, p: Floats, plane: Plane) -> Complexes:
-        """OTF of the detector alone, (n,)."""
-        return np.asarray(_alone(self).factors(p[None], plane)[-1, 0])
+    def factors_on(self, p: Floats, plane: Plane) -> Complexes:
+        """OTFs of all factors, (k, n): of terms, diffusion, and the detector at the end."""
+        return np.asarray(_alone(self).factors(p[None], plane)[:, 0])
 
     def slopes_on(self, p: Floats, plane: Plane) -> Complexes:
         """Derivatives of the OTF by the parameters, (n, p)."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -16,6 +16,7 @@ from acutance.curves.rounded_rows import RoundedRows
 from acutance.curves.short_repr import ShortRepr
 from acutance.geometry.angles import wrap_axis
 from acutance.targets.combine.correction import Correction
+from acutance.targets.combine.forms_on_plane import FormsOnPlane
 from acutance.targets.combine.plane import Plane
 from acutance.targets.combine.sensor_forms import SensorForm
 
@@ -24,6 +25,8 @@ __all__ = ["CombinedOtf", "RoundedForm", "WeightedForm"]
 Complexes = NDArray[np.complex128]
 
 _MAX_STD_DEG = 30.0
+_AT_ONCE = 1024
+"""Places of the plane at which all forms are worked out together."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,17 +60,11 @@ class WeightedForm(ShortRepr):
 
     def otf_on(self, plane: Plane) -> Complexes:
         """OTF, (n,), at places of the plane; exactly 1 at zero frequency."""
-        plain = self.form.otf_on(self.parameters, plane)
-        if self.weights.size == 0:
-            return plain
-        return np.asarray(plain + self.correction.directions_on(plane) @ self.weights)
+        return np.asarray(FormsOnPlane([self], plane).otfs[0])
 
     def slopes_on(self, plane: Plane) -> Complexes:
         """Derivatives of the OTF by parameters and weights, (n, p + m)."""
-        own = self.form.slopes_on(self.parameters, plane)
-        if self.weights.size == 0:
-            return own
-        return np.concatenate([own, self.correction.directions_on(plane)], axis=1)
+        return FormsOnPlane([self], plane).slopes[0]
 
     def numbers(self, widened: float = 1.0) -> dict[str, Estimate]:
         """Parameters by name; the direction of a round or short shape has no value (NaN)."""
@@ -193,21 +190,23 @@ class CombinedOtf(ShortRepr):
 
     def otf(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """Mean OTF over the forms, (n,), exactly 1 at zero frequency."""
-        return self._otf_on(Plane(u_cpp, v_cpp))
+        return np.concatenate([some.mean for some in self._on_parts(u_cpp, v_cpp)])
 
     def factor(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """Factor of its covariance, (n, k): that of each form, and their differences."""
-        plane = Plane(u_cpp, v_cpp)
-        mean = self._otf_on(plane)
-        parts = []
-        for one in self.forms:
-            off = one.otf_on(plane) - mean
-            own = np.concatenate([one.slopes_on(plane) @ one.root, off[:, None]], axis=1)
-            parts.append(math.sqrt(one.weight) * own)
-        found = self.birge_ratio * np.concatenate(parts, axis=1)
+        found = np.concatenate([self._factor_on(one) for one in self._on_parts(u_cpp, v_cpp)])
         found[(u_cpp == 0) & (v_cpp == 0)] = 0.0
-        return np.asarray(found)
+        return found
 
-    def _otf_on(self, plane: Plane) -> Complexes:
-        # What several forms ask of the plane is worked out once.
-        return np.asarray(sum(one.weight * one.otf_on(plane) for one in self.forms))
+    def _factor_on(self, forms: FormsOnPlane) -> Complexes:
+        parts = []
+        for one, otf, slopes in zip(self.forms, forms.otfs, forms.slopes, strict=True):
+            own = np.concatenate([slopes @ one.root, (otf - forms.mean)[:, None]], axis=1)
+            parts.append(math.sqrt(one.weight) * own)
+        return np.asarray(self.birge_ratio * np.concatenate(parts, axis=1))
+
+    def _on_parts(self, u_cpp: Floats, v_cpp: Floats) -> Iterator[FormsOnPlane]:
+        """The forms at some of the places after others: of a whole plane they fill memory."""
+        for first in range(0, max(u_cpp.size, 1), _AT_ONCE):
+            some = slice(first, first + _AT_ONCE)
+            yield FormsOnPlane(self.forms, Plane(u_cpp[some], v_cpp[some]))
