@@ -233,7 +233,7 @@ def _half_disc(
     # By the angle on the disc's rim, in which the chord has no infinite slope at its ends.
     first = np.arccos(np.clip((end - centre) / radius, -1.0, 1.0))
     span = np.arccos(np.clip(-centre / radius, -1.0, 1.0)) - first
-    nodes, weights = _legendre(32 + math.ceil(16 * float(np.max(np.abs(waves)))))
+    nodes, weights = _legendre(16 + math.ceil(8 * float(np.max(np.abs(waves)))))
     radius, phase, centre = (
         np.broadcast_to(one, span.shape).reshape(-1, 1)
         for one in (radius, 8 * math.pi * waves * nu, centre)
