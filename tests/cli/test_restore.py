@@ -8,6 +8,7 @@ import pytest
 import acutance as ac
 from acutance import optics, simulate
 from acutance.raster import open_image, write_geotiff
+from acutance.raster.dataset import open_quietly
 
 SENSOR = optics.Sensor([optics.Gaussian(0.5), optics.Detector()], gsd_m=0.7)
 
@@ -325,6 +326,19 @@ def test_the_proof_is_of_the_band_the_filter_is_of(acutance, folder, tmp_path):
     assert result.exit_code == 0, result.stderr
     assert "band 2:\nEdges before and after" in result.stdout
     assert "filtered though the filter is of band 2: band 1" in result.stdout
+
+
+def test_bands_are_called_by_their_names(acutance, folder, tmp_path):
+    pixels = open_image(folder / "across.tif").read()
+    image = tmp_path / "two.tif"
+    write_geotiff(image, np.stack([pixels, pixels]).astype(np.float32), gsd_m=0.7)
+    with open_quietly(image, "r+") as written:
+        written.descriptions = ("B2", "B3")
+    words = "restore", "apply", image, "--filter", folder / "filter.json", "--out"
+    result = acutance(*words, tmp_path / "o.tif", "--band", "b3", "--accept-mismatch", "--json")
+    assert list(json.loads(result.stdout)["bands"]) == ["2"]
+    result = acutance(*words, tmp_path / "p.tif", "--band", "red")
+    assert (result.exit_code, "two.tif are B2, B3" in result.stderr) == (2, True)
 
 
 def test_what_was_written_is_told_where_no_edge_proves_it(acutance, folder, tmp_path):

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from acutance.cli.choices import parse_band, parse_share
+from acutance.cli.choices import parse_share
 from acutance.cli.documents import read_json
+from acutance.cli.named_bands import numbers_of_bands, parse_bands
 from acutance.cli.option_groups import with_groups
 from acutance.cli.options import (
     GsdOption,
@@ -175,8 +176,9 @@ def apply(
     band: Annotated[
         str | None,
         typer.Option(
-            metavar="N,...|all",
-            help="Which bands; without it the measured one, or the only one. Others are copied.",
+            metavar="BAND,...|all",
+            help="Which bands, by number or name; without it the measured one, or the only one. "
+            "Others are copied.",
         ),
     ] = None,
     nodata: Annotated[
@@ -234,7 +236,7 @@ def apply(
     regions = _regions(image, roi, nodata)
     with progress_bar(f"restore {Path(image).name}") as progress:
         restored = restore(
-            image, chosen, out=place.place, bands=_bands(band), nodata=nodata,
+            image, chosen, out=place.place, bands=_bands(image, band), nodata=nodata,
             saturation=saturation, accept_mismatch=accept_mismatch, progress=progress,
         )  # fmt: skip
     say(f"wrote {place.path}")
@@ -306,11 +308,11 @@ def _proof_text(proof: RestorationProof, band: int, filtered: int) -> str:
     return f"band {band}:\n{proof_text(proof)}" if filtered > 1 else proof_text(proof)
 
 
-def _bands(text: str | None) -> Any:
+def _bands(image: str, text: str | None) -> Any:
     """The value of ``--band``: numbers, "all", or None."""
     if text is None or text == "all":
         return text
-    return [parse_band(one) for one in text.split(",")]
+    return numbers_of_bands(image, parse_bands(text))
 
 
 def _scene(text: str) -> Any:

@@ -53,9 +53,9 @@ class ScenePixelOptions(PixelOptions):
     band: Annotated[
         str,
         typer.Option(
-            metavar="N,...|all",
-            help="Which band, from 1. Several, 1,2,3 or all, are measured at the same edges, with "
-            "the shifts between them.",
+            metavar="BAND,...|all",
+            help="Which band: its number, from 1, or its name (acutance image lists them). "
+            "Several, 1,2,3 or all, are measured at the same edges, with the shifts between them.",
         ),
     ] = "1"
 
