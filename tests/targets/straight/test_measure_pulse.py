@@ -7,6 +7,7 @@ import pytest
 
 import acutance as ac
 from acutance.simulate import pulse, reference_systems
+from acutance.targets.straight.pulse_checks import width_check
 from acutance.targets.straight.pulse_spectrum import zeros_cpp
 
 SYSTEMS = reference_systems()
@@ -117,6 +118,29 @@ def test_half_the_width_is_doubtful(held_px):
     assert m.verdict.word == "doubtful"
     free = rf"held at {held_px:.4f} px, fitted freely it is 3\.0\d+ ± 0\.0"
     assert re.search(free, str(m.verdict))
+
+
+@pytest.mark.parametrize(
+    ("sigma_px", "width_px", "snr", "seed"),
+    [(0.4, 4.2, 60, 2), (0.6, 5.5, 45, 0), (0.6, 5.5, 30, 1)],
+)
+def test_feet_taken_for_metres_are_told(sigma_px, width_px, snr, seed):
+    """From a third of the width the free fit stops at another one, or finds no pulse."""
+    sensor = ac.Sensor([ac.optics.Gaussian(sigma_px), ac.optics.Detector()])
+    image, _ = pulse(
+        sensor, width_px=width_px, angle_deg=6.0, shape=(44, 48), snr=snr,
+        rng=np.random.default_rng(seed),
+    )  # fmt: skip
+    m = ac.measure_pulse(image, width_px=width_px / 3.28, fit_width=False)
+    assert m.verdict.word == "doubtful"
+    assert "width_sigmas" in failed(m)
+    width = next(check for check in m.checks if check.name == "width_sigmas")
+    freely = re.search(r"fitted freely it is (\d\.\d+)", width.message)
+    assert float(freely[1]) == pytest.approx(width_px, abs=0.05)
+
+
+def test_a_held_width_that_nothing_confirms_does_not_pass():
+    assert not width_check({}, 1.2, None, is_held=True).passed
 
 
 @pytest.mark.parametrize("held_px", [2.5, 4.5, 6.0])

@@ -26,7 +26,12 @@ from acutance.targets.straight.lsf import of_stated_target, with_uncertain_halo
 from acutance.targets.straight.options import PulseOptions
 from acutance.targets.straight.pixels import EdgeFit
 from acutance.targets.straight.published import PUBLISHED_PULSE, PUBLISHED_PULSE_OPTIONS
-from acutance.targets.straight.pulse_checks import check_pulse, pulse_snr, width_check
+from acutance.targets.straight.pulse_checks import (
+    LEAST_FREE_PX,
+    check_pulse,
+    pulse_snr,
+    width_check,
+)
 from acutance.targets.straight.pulse_response import prf_fwhm
 from acutance.targets.straight.stated_target import stated_target
 from acutance.targets.straight.straight_measurement import StraightMeasurement
@@ -199,12 +204,21 @@ def _width_check(
 def _free_width(region: RegionPixels, held_px: float, *, robust: bool) -> Estimate | None:
     """The width that the joint fit finds where another was held; None where it finds none.
 
-    From a first fit of its own: about one with half the width the blur is wide, and stays so.
+    Fitted from the width that is found when none is stated, and from the held one: about one with
+    half the width the blur is wide, and stays so. Where several fit the nearest to it is told.
     """
+    starts = (None, held_px)
+    found = [one for one in (_fitted_width(region, px, robust) for px in starts) if one is not None]
+    wide = [one for one in found if one.value >= LEAST_FREE_PX]
+    return min(wide[:1] or found, key=lambda one: abs(one.value - held_px), default=None)
+
+
+def _fitted_width(region: RegionPixels, first_px: float | None, robust: bool) -> Estimate | None:
+    """The width that the joint fit finds from a first guess, near the end begun once more."""
     try:
-        trimmed, _ = find_pulse(region.pixels, held_px)
+        trimmed, _ = find_pulse(region.pixels, first_px)
         width = fit_pulse(trimmed, robust=robust).pulse_width
-        if _is_far(width.value, held_px):
+        if first_px is not None and _is_far(width.value, first_px):
             again, _ = find_pulse(region.pixels, width.value)
             width = fit_pulse(again, robust=robust).pulse_width
     except TargetError:

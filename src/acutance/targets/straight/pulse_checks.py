@@ -66,7 +66,7 @@ PULSE_CHECKS = (
 )  # fmt: skip
 """Names of all checks of a pulse."""
 
-_LEAST_FREE_PX: Final = 1.75
+LEAST_FREE_PX: Final = 1.75
 """Narrower pulses have several widths that fit, each with its own blur: of 717 of .5 to 1.5 px, six
 shapes of sensors at SNR 40 to 200, 54 % of the intervals of MTF at Nyquist held, and of 720 of a
 held width 99 %; of those of 2 px 98 %."""
@@ -205,8 +205,8 @@ def _wide_enough(limits: Limits, width: Estimate) -> Check:
     found = f"the pulse is {width.value:.2f} px wide"
     if not width.std > 0:
         return answer("width_px", width.value, found, limits)
-    advice = _FREE_ADVICE if width.value < _LEAST_FREE_PX else None
-    return answer("width_px", width.value, found, limits, caution=_LEAST_FREE_PX, advice=advice)
+    advice = _FREE_ADVICE if width.value < LEAST_FREE_PX else None
+    return answer("width_px", width.value, found, limits, caution=LEAST_FREE_PX, advice=advice)
 
 
 def width_check(
@@ -229,9 +229,9 @@ def width_check(
         found = f"the width is {fitted} px; no other was stated"
         return answer("width_sigmas", 0.0, found, limits)
     if fitted is None or not fitted.std > 0:
-        found = f"the width was held at {stated_px:.4f} px; freely none could be fitted"
-        return answer("width_sigmas", 0.0, found, limits)
-    is_narrow = is_held and fitted.value < _LEAST_FREE_PX
+        found = f"the width was held at {stated_px:.4f} px, and no pulse of a free width was found"
+        return answer("width_sigmas", MAX_RATIO, found, limits, advice=_HELD_ADVICE)
+    is_narrow = is_held and fitted.value < LEAST_FREE_PX
     std = math.hypot(fitted.std, _NARROW_STD_PX) if is_narrow else fitted.std
     compared = WidthConsistency(stated_px, fitted.value, std)
     value = min(abs(compared.sigmas), MAX_RATIO) if is_held else abs(compared.sigmas)
