@@ -27,6 +27,7 @@ __all__ = [
     "BudgetTerm",
     "TermWords",
     "budget_rows",
+    "least_systematic_share",
     "main_stds",
     "std_of_mean",
     "systematic_share",
@@ -193,14 +194,24 @@ def systematic_share(
     It is the part of `terms`. Of a number without a budget it is the largest of those that have
     one; one in metres has that of the same in pixels.
     """
+    return max(_systematic_shares(budget, direction, number, terms))
+
+
+def least_systematic_share(budget: Iterable[BudgetTerm], direction: str, number: str) -> float:
+    """The same, the smallest of those that have one: by the rest of its variance measurements of
+    one sensor may surely differ."""
+    return min(_systematic_shares(budget, direction, number, SYSTEMATIC_TERMS))
+
+
+def _systematic_shares(
+    budget: Iterable[BudgetTerm], direction: str, number: str, terms: frozenset[str]
+) -> list[float]:
+    """That of a number which has a budget, of another one those of all that have."""
     number = number.removesuffix("_m") + "_px" if number.endswith("_m") else number
     rows = [row for row in budget if row.direction == direction and row.name in terms]
-
-    def share(name: str) -> float:
-        found = sum(row.share[name] for row in rows)
-        return found if math.isfinite(found) else 1.0
-
-    return share(number) if number in MAIN_NUMBERS else max(map(share, MAIN_NUMBERS))
+    names = (number,) if number in MAIN_NUMBERS else MAIN_NUMBERS
+    found = [sum(row.share[name] for row in rows) for name in names]
+    return [one if math.isfinite(one) else 1.0 for one in found]
 
 
 def std_of_mean(weight: Floats, std: Floats, share: Floats, widened: float = 1.0) -> float:

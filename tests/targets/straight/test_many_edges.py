@@ -27,6 +27,11 @@ SYSTEM = ac.Sensor(
 )
 
 
+def weighted_mean(numbers, common):
+    """Of numbers whose part that is common to all is known."""
+    return _weighted_mean(numbers, common, common)
+
+
 @pytest.fixture(scope="module")
 def scene():
     return site(SYSTEM, np.random.default_rng(4))
@@ -92,17 +97,17 @@ def test_an_image_without_edges_gives_an_empty_result():
 
 
 def test_weighted_mean_and_chi_square():
-    mean, chi_square = _weighted_mean([Estimate(1.0, 0.1), Estimate(1.3, 0.2)], np.zeros(2))
+    mean, chi_square = weighted_mean([Estimate(1.0, 0.1), Estimate(1.3, 0.2)], np.zeros(2))
     assert mean.value == pytest.approx((1.0 / 0.01 + 1.3 / 0.04) / (1 / 0.01 + 1 / 0.04))
     assert chi_square == pytest.approx(
         (1.0 - mean.value) ** 2 / 0.01 + (1.3 - mean.value) ** 2 / 0.04
     )
     # chi-square 1.8 with one degree of freedom: the Birge ratio widens the mean's deviation.
     assert mean.std == pytest.approx(math.sqrt(chi_square) / math.sqrt(125))
-    agreeing, small = _weighted_mean([Estimate(1.0, 0.1), Estimate(1.01, 0.1)], np.zeros(2))
+    agreeing, small = weighted_mean([Estimate(1.0, 0.1), Estimate(1.01, 0.1)], np.zeros(2))
     assert small < 1
     assert agreeing.std == pytest.approx(0.1 / math.sqrt(2))
-    common, _ = _weighted_mean([Estimate(1.0, 0.1), Estimate(1.01, 0.1)], np.full(2, 0.5))
+    common, _ = weighted_mean([Estimate(1.0, 0.1), Estimate(1.01, 0.1)], np.full(2, 0.5))
     assert common.std == pytest.approx(0.1 * math.sqrt(0.25 + 0.5))
 
 
@@ -114,32 +119,47 @@ def test_what_is_common_to_all_does_not_hide_that_they_differ(common):
     for _ in range(1000):
         own = math.sqrt(1 - common) * rng.normal(size=4)
         value = 10 + math.sqrt(common) * rng.normal() + own
-        _, found = _weighted_mean([Estimate(float(one), 1.0) for one in value], np.full(4, common))
+        _, found = weighted_mean([Estimate(float(one), 1.0) for one in value], np.full(4, common))
         chances.append(_chance(found, 3))
     assert np.mean(np.array(chances) < 0.05) == pytest.approx(0.05, abs=0.02)
     assert np.mean(chances) == pytest.approx(0.5, abs=0.03)
 
 
+def test_edges_that_agree_agree_in_every_number():
+    """Of numbers without a budget the part that is common to all is not known."""
+    sensor = ac.Sensor([ac.optics.Gaussian(0.9), ac.optics.Detector()])
+    chances = {name: [] for name in ("mtf50_cpp", "mtf30_cpp", "half_extent_bright_px", "rer")}
+    for seed in range(16):
+        board = ac.simulate.checkerboard(
+            sensor, snr=22, tile_px=36, shape=(150, 150), rng=np.random.default_rng(seed)
+        )
+        for group in ac.measure_edges(board.image).groups.values():
+            for name, found in chances.items():
+                found.append(group.p_value[name])
+    for found in chances.values():
+        assert np.mean(np.array(found) < 0.05) < 0.13
+
+
 def test_numbers_with_nothing_of_their_own_cannot_disagree():
-    mean, found = _weighted_mean([Estimate(1.0, 0.1), Estimate(1.3, 0.1)], np.ones(2))
+    mean, found = weighted_mean([Estimate(1.0, 0.1), Estimate(1.3, 0.1)], np.ones(2))
     assert math.isnan(found)
     assert mean.std == pytest.approx(0.1)
 
 
 def test_numbers_at_zero_are_not_averaged_as_if_gaussian():
     clipped = [Estimate(0.0, 0.017), Estimate(0.0, 0.015), Estimate(0.0, 0.017), Estimate(0, 0.011)]
-    mean, chi_square = _weighted_mean(clipped, np.zeros(4))
+    mean, chi_square = weighted_mean(clipped, np.zeros(4))
     assert mean.value == 0.0
     assert 0.011 < mean.std < 0.017
     assert math.isnan(chi_square)
     # Two overshoots that are not there, with next to no deviation, and one that is.
-    mean, chi_square = _weighted_mean(
+    mean, chi_square = weighted_mean(
         [Estimate(0, 0.0007), Estimate(0, 0.0009), Estimate(0.042, 0.012)], np.zeros(3)
     )
     assert mean.value == pytest.approx(0.014)
     assert mean.std == pytest.approx(0.014)
     assert math.isnan(chi_square)
-    alone, _ = _weighted_mean([Estimate(0.0, 0.017)], np.zeros(1))
+    alone, _ = weighted_mean([Estimate(0.0, 0.017)], np.zeros(1))
     assert alone == Estimate(0.0, 0.017)
 
 

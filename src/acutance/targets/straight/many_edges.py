@@ -32,7 +32,11 @@ from acutance.targets.straight.options import EdgeOptions
 from acutance.targets.straight.straight_measurement import StraightMeasurement
 from acutance.targets.straight.tuned import MIN_CONTRAST_SHARE, MIN_STRENGTH_SHARE
 from acutance.targets.target_result import EdgeGroup, Rejected, TargetResult
-from acutance.targets.uncertainty_budget import std_of_mean, systematic_share
+from acutance.targets.uncertainty_budget import (
+    least_systematic_share,
+    std_of_mean,
+    systematic_share,
+)
 
 __all__ = ["combine_edges", "each_edge", "measure_edges"]
 
@@ -270,8 +274,11 @@ def _group(edges: tuple[StraightMeasurement, ...]) -> EdgeGroup[StraightMeasurem
     metrics, chi_square, p_value = {}, {}, {}
     for name in own[0].metrics():
         numbers = [one.metrics().get(name, Estimate(math.nan)) for one in own]
-        common = [systematic_share(one.budget, one.orientation, name) for one in own]
-        mean, scatter = _weighted_mean(numbers, np.array(common))
+        most, least = (
+            np.array([share(one.budget, one.orientation, name) for one in own])
+            for share in (systematic_share, least_systematic_share)
+        )
+        mean, scatter = _weighted_mean(numbers, most, least)
         metrics[name] = mean
         chi_square[name] = scatter
         p_value[name] = _chance(scatter, len(own) - 1)
@@ -290,11 +297,13 @@ def _best_and_others(
     return edges, ()
 
 
-def _weighted_mean(numbers: Sequence[Estimate], common: Floats) -> tuple[Estimate, float]:
+def _weighted_mean(
+    numbers: Sequence[Estimate], most: Floats, least: Floats
+) -> tuple[Estimate, float]:
     """Mean weighted by 1 / std^2, and chi-square; the Birge ratio widens the std.
 
-    Of every variance a part is common to all, (n,): it cannot make the numbers differ, so that
-    chi-square is that of the other part.
+    Of every variance a part is common to all, at most and at least so much, (n,): it does not
+    average out, and it cannot make the numbers differ, so that chi-square is that of the rest.
     """
     value = np.array([number.value for number in numbers])
     std = np.array([number.std for number in numbers])
@@ -305,10 +314,10 @@ def _weighted_mean(numbers: Sequence[Estimate], common: Floats) -> tuple[Estimat
         return Estimate(*_plain_mean(value, std), lowest), math.nan
     weight = std**-2 / np.sum(std**-2)
     mean = float(weight @ value)
-    scatter = _chi_square(value, std * np.sqrt(1 - common))
+    scatter = _chi_square(value, std * np.sqrt(1 - least))
     freedom = len(numbers) - 1
     widened = math.sqrt(scatter / freedom) if freedom and scatter > freedom else 1.0
-    return Estimate(mean, std_of_mean(weight, std, common, widened), lowest), scatter
+    return Estimate(mean, std_of_mean(weight, std, most, widened), lowest), scatter
 
 
 def _chi_square(value: Floats, own_std: Floats) -> float:
