@@ -171,16 +171,38 @@ class Correlation:
         The strongest correlation found among the direct neighbours.
     significance : float
         That correlation in units of the standard deviation which white noise has.
+    by_lag : tuple of float
+        Correlation of pixels one and two apart, in all directions; empty where noise is white.
     """
 
     inflation: float
     strongest: float
     significance: float
+    by_lag: tuple[float, ...] = ()
 
     @property
     def significant(self) -> float:
         """Modulus of the strongest correlation, 0 where chance explains it: checks use it."""
         return abs(self.strongest) if self.significance >= _SIGNIFICANT else 0.0
+
+    @property
+    def pixels_as_one(self) -> float:
+        """So many pixels tell as much of the noise's variance as one would of white noise."""
+        return 1 + 2 * sum(one**2 for one in self.by_lag)
+
+    def seen_by(self, template: Floats, rows: NDArray[np.intp], cols: NDArray[np.intp]) -> float:
+        """Variance of the noise's product with a template over that of white noise, at least 1.
+
+        Parameters
+        ----------
+        template : (n,) array
+        rows, cols : (n,) int arrays
+            Its pixels, from 0.
+        """
+        if not self.by_lag:
+            return 1.0
+        products, _ = _lagged_products(np.ascontiguousarray(template), rows, cols, _ALL_LAGS)
+        return max(1 + 2 * float(products @ self.by_lag) / float(template @ template), 1.0)
 
 
 def correlation(
@@ -221,7 +243,8 @@ def correlation(
     x, y = np.array(directions).T[:, :, None]
     along_px = right * x + down * y
     waves = np.cos(2 * np.pi * _FREQ_CPP[:, None] * along_px[:, None])
-    return Correlation(max(float((1 + 2 * waves @ rho[known]).max()), 1.0), strongest, significance)
+    inflation = max(float((1 + 2 * waves @ rho[known]).max()), 1.0)
+    return Correlation(inflation, strongest, significance, tuple(np.where(known, rho, 0).tolist()))
 
 
 @compiled

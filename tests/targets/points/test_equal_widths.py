@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy import ndimage
 
 import acutance as ac
 from acutance.simulate import mirror_columns, reference_systems
@@ -14,7 +15,7 @@ SYSTEMS = reference_systems()
 RINGS = 8
 
 
-def measured(name, diameter_px, seed=1, snr=200.0):
+def measured(name, diameter_px, seed=1, snr=200.0, textured=False):
     """Twenty mirrors that are discs of all sizes up to a diameter."""
     rng = np.random.default_rng(seed)
     places = mirror_columns((12.5, 12.5)) + rng.uniform(-0.4, 0.4, 2)
@@ -27,7 +28,10 @@ def measured(name, diameter_px, seed=1, snr=200.0):
         turn = 2.4 * k
         moved = places + away[:, None] * np.array([math.sin(turn), math.cos(turn)])
         image += ac.simulate.points(SYSTEMS[name], positions=moved, shape=shape)[0] / RINGS
-    return ac.measure_points(image + rng.normal(0.0, 1000.0 / snr, shape))
+    noise = rng.normal(size=shape)
+    if textured:
+        noise = ndimage.gaussian_filter(noise, 0.75)
+    return ac.measure_points(image + 1000.0 / snr * noise / noise.std())
 
 
 def check_of(found):
@@ -53,3 +57,19 @@ def test_few_sources_pass(count):
         snr=80.0, rng=np.random.default_rng(count),
     )  # fmt: skip
     assert check_of(ac.measure_points(image)).passed
+
+
+@pytest.mark.parametrize("seed", [0, 3, 5, 7])
+def test_points_on_grass_pass(seed):
+    """Its noise is correlated by .6: sizes and residuals scatter more than by white noise."""
+    scene = ac.simulate.brookings(ac.optics.preset("generic-2005"), np.random.default_rng(seed))
+    found = ac.measure_points(scene.image, roi=(10, 160, 120, 50))
+    checks = {check.name: check for check in found.checks}
+    assert not checks["correlated_noise"].passed
+    assert checks["equal_widths"].value < 3
+    assert checks["source_misfit"].passed
+
+
+def test_mirrors_of_different_sizes_are_named_on_textured_ground():
+    found = measured("gaussian", 1.2, textured=True)
+    assert not check_of(found).passed

@@ -94,7 +94,7 @@ def check_points(
         _background_uniformity(sources, limits),
         _background_curvature(sources, limits),
         _psf_width(fwhm_px, limits),
-        _source_misfit(sources, limits),
+        _source_misfit(sources, correlation, limits),
         undeclared_fill([region.fill], limits),
         stated_gsd(region.info, limits),
         *processing_checks(region, limits),
@@ -222,13 +222,19 @@ def _rise(places: Floats, slope: Floats, axis: int) -> Estimate:
     return Estimate(float(fit[1 + axis]), math.sqrt(scatter * inverse[1 + axis, 1 + axis]))
 
 
-def _source_misfit(sources: Sequence[PointSource], limits: Limits) -> Check:
+def _source_misfit(
+    sources: Sequence[PointSource], correlation: Correlation | None, limits: Limits
+) -> Check:
+    """How large the residuals of the worst source are; of correlated pixels they scatter more."""
     worst = max(sources, key=lambda one: one.misfit)
     misfit = min(worst.misfit, MAX_RATIO)
     found = (
         f"the residuals of the source at row {worst.row.value:.1f}, column {worst.col.value:.1f} "
         f"are {misfit:.1f} times the noise"
     )
+    if correlation is not None and correlation.by_lag and misfit > 1:
+        misfit = 1 + (misfit - 1) / math.sqrt(correlation.pixels_as_one)
+        found += f", which counts as {misfit:.1f} in noise that neighbours share"
     return answer("source_misfit", misfit, found, limits)
 
 

@@ -28,13 +28,14 @@ def excess_variances(fit: PointsFit) -> tuple[Floats, Floats]:
     Returns
     -------
     excess, std : (k,) arrays
-        To first order, and its standard deviation by the noise.
+        To first order, and its standard deviation by the noise, correlated as it is.
     """
     stamps, blur = fit.stamps, fit.model.blur
     slopes = blur.slopes(*stamps.offsets(fit.places))
     own = own_columns(stamps, fit.places, fit.fluxes, slopes[:3])
     wider = (slopes.by_xx + slopes.by_yy) * fit.fluxes[stamps.owner]
     residual, noise = fit.residual, fit.pixel_noise
+    row, col = (one.astype(np.intp) for one in (stamps.row, stamps.col))
     excess, std = np.empty((2, fit.fluxes.size))
     for k, (begin, end) in enumerate(zip(stamps.starts[:-1], stamps.starts[1:], strict=True)):
         level = np.maximum(noise[begin:end], 1e-300)
@@ -42,7 +43,8 @@ def excess_variances(fit: PointsFit) -> tuple[Floats, Floats]:
         alone = alone - columns @ np.linalg.lstsq(columns, alone, rcond=None)[0]
         power = max(float(alone @ alone), 1e-300)
         excess[k] = float(alone @ (residual[begin:end] / level)) / power
-        std[k] = 1 / math.sqrt(power)
+        rows, cols = (one[begin:end] - one[begin:end].min() for one in (row, col))
+        std[k] = math.sqrt(fit.correlation.seen_by(alone, rows, cols) / power)
     variance = sum(0.5 * (width / FWHM_OF_SIGMA) ** 2 for width in blur.widths_px)
     return excess / variance, std / variance
 
