@@ -204,7 +204,7 @@ def _diagonals(one: Mtf, other: Mtf, limits: Limits) -> Check:
     )
     sigmas = f"{_SIGNIFICANT:.0f} standard deviations"
     if least > 0:
-        found = f"{told}, surely (by {sigmas}) different by {100 * least:.0f} % of it"
+        found = f"{told}: they differ by at least {100 * least:.0f} % (by {sigmas})"
     else:
         found = f"{told}: within {sigmas} they agree"
     return answer("diagonals", least, found, limits)
@@ -225,7 +225,7 @@ def _axes_differ(across: Mtf, along: Mtf, parts: PartsFit | None, limits: Limits
     told = f"at {at:.2g} c/px the MTF is {one:.3f} across and {other:.3f} along"
     sigmas = f"{_SIGNIFICANT:.0f} standard deviations"
     if excess > 0:
-        found = f"{told}, surely (by {sigmas}) {100 * excess:.0f} % more"
+        found = f"{told}: more by at least {100 * excess:.0f} % (by {sigmas})"
     else:
         found = f"{told}: within {sigmas} they agree"
     caution = None if parts is None else math.inf

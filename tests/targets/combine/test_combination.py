@@ -60,6 +60,14 @@ def test_the_combination_is_more_exact_than_any_of_its_parts(together, edges, mi
     assert together.trusted, together.failed_checks
 
 
+def test_parts_stand_beside_the_combination_and_its_deviation(together):
+    for part in together.parts:
+        for row, angle in enumerate(part.normal_deg):
+            combined = together.mtf_at(angle)(part.freq_cpp)
+            assert part.fitted[row] == pytest.approx(combined.value, abs=2e-3)
+            assert part.fitted_std[row] == pytest.approx(combined.std, rel=0.1, abs=1e-4)
+
+
 HALO = optics.Sensor([optics.Gaussian(0.4), optics.Halo(0.1, 2.5), optics.Detector()])
 
 
@@ -153,6 +161,8 @@ def test_sensors_far_apart_have_their_combination_between_them():
     found = ac.combine([edge(*one) for one in kinds])
     assert found.verdict.word == "invalid"
     assert found.chi_square.p_value < 1e-6
+    correction = next(check for check in found.checks if check.name == "correction")
+    assert "fits least, p = " in correction.message
     (beyond,) = (check for check in found.checks if check.name == "beyond_members")
     assert beyond.passed
     one, other, _ = found.parts

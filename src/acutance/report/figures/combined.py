@@ -44,8 +44,9 @@ def combined_panels(measurement: CombinedMeasurement) -> tuple[Panel, ...]:
         ),
         Panel(
             "Residuals",
-            "Each measurement minus the combined MTF, in standard deviations of the measurement. "
-            "Neighbouring frequencies are correlated.",
+            "Each measurement minus the combined MTF, in standard deviations of both together. "
+            "Neighbouring frequencies are correlated, and what a measurement leaves to its prior "
+            "counts as well: chi-square is of the pixels alone.",
             on_axes(_draw_residuals, measurement),
         ),
         Panel(
@@ -114,8 +115,9 @@ def _draw_residuals(axes: Axes, measurement: CombinedMeasurement) -> None:
     axes.axhspan(-1.96, 1.96, color="#eceff2", linewidth=0)
     axes.axhline(0.0, color=FAINT, linewidth=0.9)
     for i, part in enumerate(measurement.parts):
+        std = np.hypot(part.std, part.fitted_std)
         with np.errstate(divide="ignore", invalid="ignore"):
-            off = np.where(part.std > 0, (part.value - part.fitted) / part.std, 0.0)
+            off = np.where(std > 0, (part.value - part.fitted) / std, 0.0)
         for row in off:
             axes.plot(
                 part.freq_cpp, np.clip(row, -MAX_STDS, MAX_STDS),

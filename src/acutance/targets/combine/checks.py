@@ -56,7 +56,7 @@ def check_combination(
         _agreement(fit, limits),
         _worst(inputs, fit, limits),
         _plain(fit, limits),
-        _correction(fit, limits),
+        _correction(inputs, fit, limits),
         _beyond(parts, limits),
         answer("directions", directions, f"{directions} directions were measured", limits),
         _counted("failed_inputs", failed, "whose own checks failed", limits),
@@ -92,14 +92,19 @@ def _agreement(fit: CombinedFit, limits: Limits) -> Check:
 
 def _worst(inputs: Sequence[MeasuredInput], fit: CombinedFit, limits: Limits) -> Check:
     """The smallest of n chances has to be n times larger."""
-    chances = [one.p_value for one in fit.members]
-    worst = int(np.nanargmin(chances)) if np.isfinite(chances).any() else 0
+    worst = _fits_least(fit)
     member = fit.members[worst]
     return answer(
-        "worst_member", min(1.0, len(chances) * chances[worst]),
+        "worst_member", min(1.0, len(fit.members) * member.p_value),
         f"{inputs[worst].name} fits least: its chi-square is {member.value:.0f}, "
         f"{member.expected:.0f} being expected", limits,
     )  # fmt: skip
+
+
+def _fits_least(fit: CombinedFit) -> int:
+    """Which measurement has the smallest chance."""
+    chances = [one.p_value for one in fit.members]
+    return int(np.nanargmin(chances)) if np.isfinite(chances).any() else 0
 
 
 def _plain(fit: CombinedFit, limits: Limits) -> Check:
@@ -111,11 +116,12 @@ def _plain(fit: CombinedFit, limits: Limits) -> Check:
     )  # fmt: skip
 
 
-def _correction(fit: CombinedFit, limits: Limits) -> Check:
-    share = fit.otf.correction_share
+def _correction(inputs: Sequence[MeasuredInput], fit: CombinedFit, limits: Limits) -> Check:
+    share, least = fit.otf.correction_share, _fits_least(fit)
     found = (
         f"a smooth correction of {100 * share:.1f} % of the log MTF was added, and its uncertainty "
-        "is part of every deviation"
+        f"is part of every deviation; {inputs[least].name} fits least, p = "
+        f"{fit.members[least].p_value:.2g}"
         if share > 0
         else "no correction was added"
     )

@@ -139,7 +139,7 @@ def _part(one: MeasuredInput, chi_square: ChiSquare, otf: Otf2d) -> CombinedPart
     shape = slices.normal_deg.size, slices.freq_cpp.size
     # As a curve over all places: each with its own value and standard deviation.
     own = Mtf(u, slices.otf, slices.factor)
-    fitted = np.abs(otf.model.otf(u, v)).reshape(shape)
+    fitted = Mtf(u, otf.model.otf(u, v), otf.model.factor(u, v))
     direction = slices.normal_deg[0]
     at = int(np.argmin(np.abs(slices.freq_cpp - NYQUIST_CPP)))
     return CombinedPart(
@@ -154,7 +154,8 @@ def _part(one: MeasuredInput, chi_square: ChiSquare, otf: Otf2d) -> CombinedPart
         slices.freq_cpp,
         own.value.reshape(shape),
         own.std.reshape(shape),
-        fitted,
+        np.abs(fitted.otf).reshape(shape),
+        fitted.std.reshape(shape),
     )
 
 

@@ -34,8 +34,8 @@ class CombinedPart(ShortRepr):
     own, combined : Estimate
         MTF at Nyquist along its direction (across, if it has all): its own, and the combined.
     freq_cpp : (n,) array
-    value, std, fitted : (m, n) arrays
-        MTF by direction, its standard deviation, and the combined MTF there.
+    value, std, fitted, fitted_std : (m, n) arrays
+        MTF by direction, its standard deviation, and the combined MTF there, with its own.
     """
 
     name: str
@@ -50,6 +50,7 @@ class CombinedPart(ShortRepr):
     value: Floats
     std: Floats
     fitted: Floats
+    fitted_std: Floats
 
     @property
     def has_all_directions(self) -> bool:

@@ -52,6 +52,7 @@ __all__ = [
     "angle",
     "blur_uniformity",
     "check_edge",
+    "contrast_snr",
     "edge_snr",
     "enough_rows",
     "lsf_narrow",
@@ -73,6 +74,10 @@ EDGE_CHECKS = (
 )  # fmt: skip
 """Names of all checks of an edge."""
 
+_FAINT_ADVICE = (
+    "what is so faint may be no target but a pattern of the ground or of its noise; choose a "
+    "target of more contrast"
+)
 _ROUNDING = 1e-12
 """Standard deviations of plateaus, relative to the contrast, that are arithmetic's alone."""
 
@@ -158,9 +163,15 @@ def _contrast(data: CheckData, limits: Limits) -> Check:
     found = (
         f"bright minus dark is {ratio_in_words(value)} times the plateaus' mean standard deviation"
     )
+    return contrast_snr(value, found, limits)
+
+
+def contrast_snr(value: float, found: str, limits: Limits) -> Check:
+    """Whether the contrast is large enough; in much noise other things are taken for targets."""
     return answer(
-        "contrast_snr", value, found, limits, default=MIN_CONTRAST_SNR, caution=MIN_TRUSTED_SNR
-    )
+        "contrast_snr", value, found, limits, default=MIN_CONTRAST_SNR, caution=MIN_TRUSTED_SNR,
+        advice=_FAINT_ADVICE if value < MIN_TRUSTED_SNR else None,
+    )  # fmt: skip
 
 
 def angle(line: Line, limits: Limits, *, by_rows: bool) -> Check:

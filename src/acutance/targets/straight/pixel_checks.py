@@ -176,16 +176,16 @@ def _gradient_words(against: float, along: float) -> str:
     Light that an aperture scatters past the edge gets less outwards: that is one way for a slope.
     """
     if not (against or along):
-        return "far from the target the background slopes no more than scattered light explains"
+        return "far from the target the ground slopes no more than light scattered by optics would"
     if along > 1 + against or not against:
-        how = f"{along:.1f} times as steeply as light that an aperture scatters at most does"
+        how = f", {along:.1f} times as steeply as light scattered by optics could"
     else:
         # The check's number is found in its own sentence.
         how = (
-            f"against light that an aperture scatters, {against:.1f} times as steeply as that does "
-            f"at most, which counts as 1 + {against:.1f}"
+            f" the other way than light scattered by optics would, {against:.1f} times as steeply "
+            f"as that could (the direction counts for 1 more)"
         )
-    return f"far from the target the background slopes {how}"
+    return f"far from the target the ground slopes{how}"
 
 
 def _slope_outwards(data: CheckData, from_px: float) -> tuple[float, float, float]:

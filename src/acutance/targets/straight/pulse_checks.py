@@ -17,6 +17,7 @@ from acutance.targets.region import RegionPixels, stated_gsd, undeclared_fill
 from acutance.targets.straight.check_data import CheckData, ratio_in_words
 from acutance.targets.straight.edge_checks import (
     angle,
+    contrast_snr,
     enough_rows,
     lsf_width,
     phases,
@@ -47,11 +48,7 @@ from acutance.targets.straight.structure_checks import (
     uniformity,
 )
 from acutance.targets.straight.trim import Extent
-from acutance.targets.straight.tuned import (
-    MIN_CONTRAST_SNR,
-    MIN_TRUSTED_SNR,
-    STRUCTURE_SIGMAS,
-)
+from acutance.targets.straight.tuned import STRUCTURE_SIGMAS
 
 __all__ = ["PULSE_CHECKS", "check_pulse", "pulse_snr", "width_check"]
 
@@ -171,9 +168,7 @@ def _contrast(data: CheckData, limits: Limits) -> Check:
         f"the pulse's peak stands {ratio_in_words(value)} standard deviations of the background "
         "above it"
     )
-    return answer(
-        "contrast_snr", value, found, limits, default=MIN_CONTRAST_SNR, caution=MIN_TRUSTED_SNR
-    )
+    return contrast_snr(value, found, limits)
 
 
 def _nonlinearity(data: CheckData, limits: Limits, width_px: float, height_ratio: float) -> Check:
