@@ -2,6 +2,8 @@
 
 import dataclasses
 import math
+from itertools import takewhile
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -214,3 +216,12 @@ def test_pixels_that_are_not_square():
     with pytest.raises(ModelError, match="without gsd_m"):
         Sensor([optics.Detector()], gsd_along_m=0.9)
     assert dataclasses.replace(sensor, gsd_along_m=None).gsd_along_normal_m(90.0) == 0.7
+
+
+def test_the_documented_file_is_the_documented_sensor():
+    page = (Path(__file__).parents[2] / "docs" / "simulate.rst").read_text()
+    _, _, after = page.partition(".. code-block:: toml\n\n")
+    indented = takewhile(lambda line: not line or line.startswith("   "), after.splitlines())
+    found = sensor_file_from_toml("\n".join(line[3:] for line in indented))
+    stated = [optics.Gaussian(0.39), optics.Detector(), optics.Smear(0.25, "along")]
+    assert found.sensor == optics.Sensor([*stated, optics.Butterworth(1.4)], gsd_m=1.0)

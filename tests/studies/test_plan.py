@@ -126,7 +126,7 @@ def test_the_simulation_can_refuse():
     plan = plan_target(PlanOptions(rows=(20,), angles_deg=(6.0,), snr=1.0, draws=2), ALONE)
     assert plan.table["refused"][0] == 2
     assert math.isnan(plan.finding("expected_mtf_nyquist").value)
-    assert [found.name for found in plan.findings] == ["expected_mtf_nyquist"]
+    assert [found.name for found in plan.findings] == ["expected_mtf_nyquist", "room_px"]
 
 
 @pytest.mark.parametrize(
@@ -143,3 +143,14 @@ def test_the_simulation_can_refuse():
 def test_impossible_plans_are_refused(wrong, words):
     with pytest.raises(OptionError, match=words):
         PlanOptions(**wrong)
+
+
+@pytest.mark.parametrize(("target", "beyond"), [("edge", "of the edge"), ("pulse", "of the pulse")])
+def test_a_plan_says_how_far_the_ground_has_to_be_level(target, beyond):
+    wide = Sensor([Gaussian(1.8), Detector()], gsd_m=0.5)
+    plan = plan_target(PlanOptions(target=target, sensor=wide, draws=0))
+    room = plan.finding("room_px")
+    fwhm_px = wide.response(6.0).fwhm_px.value
+    assert room.value == pytest.approx(3 * fwhm_px)
+    assert f"{room.value:.3g} px ({0.5 * room.value:.3g} m) of level ground" in room.text
+    assert beyond in room.text

@@ -197,10 +197,15 @@ def _planned_width(options: PlanOptions) -> float:
 
 def _wide_enough(design: Design, sensor: Sensor) -> Design:
     """The design in rows that reach 10 px, or three blurs, beyond the target."""
-    room = max(_ROOM_PX, 3 * sensor.response(design.angle_deg).fwhm_px.value)
+    room = _room_px(design.angle_deg, sensor)
     across = 0.0 if math.isnan(design.width_px) else design.width_px
     leaning = design.rows * math.tan(math.radians(design.angle_deg))
     return replace(design, cols=math.ceil(leaning + across + 2 * room))
+
+
+def _room_px(angle_deg: float, sensor: Sensor) -> float:
+    """Plateau along the normal on either side of the target."""
+    return max(_ROOM_PX, 3 * sensor.response(angle_deg).fwhm_px.value)
 
 
 def measure_plan_trial(options: PlanOptions, design: Design, rng: np.random.Generator) -> Record:
@@ -281,7 +286,7 @@ def _findings(options: PlanOptions, table: Table) -> tuple[Finding, ...]:
         answer = f"MTF at Nyquist: {expected:.4f} ({how}) from {design}"
     else:
         answer = f"MTF at Nyquist: no number ({how}) from {design}: choose another design"
-    found = [Finding("expected_mtf_nyquist", expected, answer)]
+    found = [Finding("expected_mtf_nyquist", expected, answer), _room(options)]
     if len(options.widths_px) > 1 and options.target == "pulse":
         listed = ", ".join(f"{one:.3g}" for one in options.widths_px)
         found.append(
@@ -317,6 +322,19 @@ def _findings(options: PlanOptions, table: Table) -> tuple[Finding, ...]:
             )
         )
     return tuple(found)
+
+
+def _room(options: PlanOptions) -> Finding:
+    """How far the ground has to be level beside the target."""
+    angle = options.angles_deg[0]
+    room_px, gsd_m = _room_px(angle, options.sensor), options.sensor.gsd_along_normal_m(angle)
+    on_ground = "" if gsd_m is None else f" ({room_px * gsd_m:.3g} m)"
+    whose = "of the edge" if options.target == "edge" else "of the pulse, beyond its own width"
+    text = (
+        f"room: {room_px:.3g} px{on_ground} of level ground on either side {whose}, along its "
+        "normal and over its whole length"
+    )
+    return Finding("room_px", room_px, text)
 
 
 def _beside_plan(planned: float, errors: Floats, slack: float, simulated: bool) -> str:
