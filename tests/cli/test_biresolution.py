@@ -50,6 +50,13 @@ def test_text(acutance, pair):
     assert "px down" in result.stdout
 
 
+def test_a_reference_may_be_the_name_of_a_sensor(acutance, pair, refused):
+    named = json.loads(acutance("biresolution", *pair, "--reference", "gaussian", "--json").stdout)
+    assert named["quantity"] == "mtf_low"
+    assert named["across"]["mtf_nyquist"]["value"] == pytest.approx(0.206, abs=0.02)
+    refused(("biresolution", *pair, "--reference", "gauss"), "none of generic-2005")
+
+
 def test_json_keeps_to_the_schema_and_holds_the_truth(acutance, pair, keeps_to_schema):
     result = acutance("biresolution", *pair, "--reference", 0.2891, "--json", "--covariance")
     assert result.exit_code == 0, result.stderr

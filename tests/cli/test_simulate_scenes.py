@@ -50,6 +50,12 @@ def test_a_pulse_in_metres_from_a_file(render, tmp_path):
     assert truth["width_m"] == pytest.approx(2.1)
 
 
+@pytest.mark.parametrize("target", ["pulse", "bars", "star", "points", "checkerboard"])
+def test_every_target_has_the_gsd_that_is_given(render, target):
+    image, *_ = render(target, "--gsd", 0.5)
+    assert image.gsd().col_m == 0.5
+
+
 def test_the_same_seed_gives_the_same_pixels(render):
     words = ("pulse", "--snr", 50, "--ground-noise", "--seed")
     images = [render(*words, seed)[0].read() for seed in (1, 1, 2)]

@@ -13,6 +13,7 @@ from acutance.cli.choices import choose_methods
 from acutance.cli.measure import measure_target
 from acutance.cli.option_groups import with_groups
 from acutance.cli.options import PixelOptions, ResultOptions, method_option
+from acutance.cli.sensor import named_sensor
 from acutance.errors import OptionError
 from acutance.targets.kinds import KINDS
 
@@ -49,9 +50,10 @@ def biresolution(
     reference: Annotated[
         str | None,
         typer.Option(
-            metavar="FILE|M",
-            help="MTF of the high image: a sensor (.toml), a measurement (.json), or its value at "
-            "the high image's Nyquist frequency. Without it the result is MTF_low / MTF_high.",
+            metavar="FILE|NAME|M",
+            help="MTF of the high image: a sensor (.toml, or its name), a measurement (.json), or "
+            "its value at the high image's Nyquist frequency. Without it the result is MTF_low / "
+            "MTF_high.",
         ),
     ] = None,
     high_band: Annotated[
@@ -125,9 +127,7 @@ def parse_reference(text: str | None) -> ReferenceLike:
         return None
     ending = Path(text).suffix.lower()
     if ending == ".toml":
-        from acutance.optics import read_sensor
-
-        return read_sensor(text)
+        return named_sensor(text)
     if ending == ".json":
         from acutance.targets.pair import measured_reference
 
@@ -139,7 +139,11 @@ def parse_reference(text: str | None) -> ReferenceLike:
     try:
         return float(text)
     except ValueError:
+        pass
+    try:
+        return named_sensor(text)
+    except OptionError as error:
         raise OptionError(
-            f"--reference {text}: give a sensor (.toml), a measurement (.json, written with "
-            "--json), or the MTF at the high image's Nyquist frequency"
+            f"--reference {text}: give a sensor (.toml, or its name), a measurement (.json, "
+            f"written with --json), or the MTF at the high image's Nyquist frequency; {error}"
         ) from None

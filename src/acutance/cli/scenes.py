@@ -12,7 +12,7 @@ from acutance.cli.choices import numbers_of
 from acutance.cli.noise import NoiseOptions
 from acutance.cli.option_groups import with_groups
 from acutance.cli.output import OutputFile, check_output
-from acutance.cli.sensor import SensorName, named_sensor
+from acutance.cli.sensor import SensorGsd, SensorName, named_sensor
 from acutance.cli.star import WaveOption
 from acutance.cli.terminal import say
 from acutance.errors import OptionError
@@ -124,6 +124,7 @@ def pulse(
     *,
     out: Out,
     sensor: SensorName = "generic-2005",
+    gsd: SensorGsd = None,
     width_px: Annotated[
         float | None, typer.Option(metavar="PX", help="Width in pixels; 3 if not given.")
     ] = None,
@@ -155,7 +156,7 @@ def pulse(
 ) -> None:
     """Render a pulse: two parallel edges between plateaus."""
     files, shape = SimulatedFiles.of(out, sensor), parse_size(size)
-    system = named_sensor(sensor)
+    system = named_sensor(sensor, gsd)
 
     import numpy as np
 
@@ -198,7 +199,9 @@ def _width_px(
     normal = normal_direction_deg(angle, "along" if along else "across")
     gsd_m = system.gsd_along_normal_m(normal)
     if gsd_m is None:
-        raise OptionError(f"--width-m {width_m:g} needs a sensor with a GSD: use --width-px")
+        raise OptionError(
+            f"--width-m {width_m:g} needs a sensor with a GSD: give --gsd, or use --width-px"
+        )
     return width_m / gsd_m
 
 
@@ -207,6 +210,7 @@ def bars(
     *,
     out: Out,
     sensor: SensorName = "generic-2005",
+    gsd: SensorGsd = None,
     periods: Annotated[
         str, typer.Option(metavar="PX,PX,...", help="Distance of two bars in each group.")
     ] = "8,6,5,4,3.2,2.5,2",
@@ -220,7 +224,7 @@ def bars(
     seed: Seed = 0,
 ) -> None:
     """Render groups of bars below one another."""
-    files, system = SimulatedFiles.of(out, sensor), named_sensor(sensor)
+    files, system = SimulatedFiles.of(out, sensor), named_sensor(sensor, gsd)
     distances = tuple(numbers_of(periods))
     if not distances:
         raise OptionError(f"--periods {periods}: write numbers, as in 8,6,4")
@@ -253,6 +257,7 @@ def star(
     *,
     out: Out,
     sensor: SensorName = "generic-2005",
+    gsd: SensorGsd = None,
     cycles: Annotated[int, typer.Option(metavar="N", help="Periods in a full turn.")] = 36,
     radius: Annotated[float, typer.Option(metavar="PX", help="Outer radius.")] = 52.0,
     wave: WaveOption = "sine",
@@ -269,7 +274,8 @@ def star(
     """Render a Siemens star."""
     if wave not in ("sine", "square"):
         raise OptionError(f"--wave {wave}: it has to be sine or square")
-    files, shape, system = SimulatedFiles.of(out, sensor), parse_size(size), named_sensor(sensor)
+    files, shape = SimulatedFiles.of(out, sensor), parse_size(size)
+    system = named_sensor(sensor, gsd)
 
     import numpy as np
 
@@ -299,6 +305,7 @@ def points(
     *,
     out: Out,
     sensor: SensorName = "generic-2005",
+    gsd: SensorGsd = None,
     layout: Annotated[
         str,
         typer.Option(metavar="NAME", help="columns: 20 mirrors in two; square: 4 by 4 of them."),
@@ -313,7 +320,7 @@ def points(
     seed: Seed = 0,
 ) -> None:
     """Render an array of mirrors."""
-    files, system = SimulatedFiles.of(out, sensor), named_sensor(sensor)
+    files, system = SimulatedFiles.of(out, sensor), named_sensor(sensor, gsd)
 
     import numpy as np
 

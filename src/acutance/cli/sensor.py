@@ -18,6 +18,7 @@ __all__ = [
     "BUDGET_EXAMPLE",
     "SENSOR_OPTION",
     "OptionalSensorName",
+    "SensorGsd",
     "SensorName",
     "named_sensor",
     "sensor_budget",
@@ -38,6 +39,10 @@ SENSOR_OPTION = typer.Option(
 )
 SensorName = Annotated[str, SENSOR_OPTION]
 OptionalSensorName = Annotated[str | None, SENSOR_OPTION]
+SensorGsd = Annotated[
+    float | None,
+    typer.Option("--gsd", metavar="M", help="GSD in metres, instead of the sensor's own."),
+]
 
 
 def named_sensor(name: str, gsd_m: float | None = None) -> Sensor:

@@ -15,7 +15,7 @@ from acutance.cli.noise import NoiseOptions
 from acutance.cli.option_groups import with_groups
 from acutance.cli.progress import progress_bar
 from acutance.cli.scenes import Seed, SimulatedFiles, parse_size
-from acutance.cli.sensor import SensorName, named_sensor
+from acutance.cli.sensor import SensorGsd, SensorName, named_sensor
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:
@@ -79,6 +79,7 @@ def landscape(
         ),
     ],
     sensor: SensorName = "generic-2005",
+    gsd: SensorGsd = None,
     corner_blur: Annotated[
         float,
         typer.Option(
@@ -133,7 +134,7 @@ def landscape(
     Beside borders lie rims, gutters, shadows, roads and neighbours; ground slopes and has texture.
     """
     files = SimulatedFiles.of(out, sensor, truth_ending=".geojson")
-    shape, system = parse_size(size), named_sensor(sensor)
+    shape, system = parse_size(size), named_sensor(sensor, gsd)
     shares = beside.shares(clean)
     soft_normals = parse_pair("--soft-normal", soft_normal, "lowest and highest, as in 45,135")
     textures = parse_pair("--texture", texture, "lowest and highest, as in 0.01,0.04")

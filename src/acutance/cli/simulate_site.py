@@ -10,7 +10,7 @@ import typer
 from acutance.cli.noise import NoiseOptions, Quantum, Saturation, ShotGain, described_noise
 from acutance.cli.option_groups import with_groups
 from acutance.cli.scenes import Out, Seed, SimulatedFiles, parse_size
-from acutance.cli.sensor import SensorName, named_sensor
+from acutance.cli.sensor import SensorGsd, SensorName, named_sensor
 from acutance.errors import OptionError
 
 __all__ = ["SITE_EXAMPLES", "checkerboard", "site"]
@@ -26,6 +26,7 @@ SITE_EXAMPLES = {
 def site(
     out: Out,
     sensor: SensorName = "generic-2005",
+    gsd: SensorGsd = None,
     targets: Annotated[
         int | None,
         typer.Option(metavar="N", min=1, help="Fill the image with N tarps, no campaign."),
@@ -54,7 +55,7 @@ def site(
         raise OptionError(
             f"--size {size} belongs to --targets: the campaign has a size of its own, leave it out"
         )
-    files, system = SimulatedFiles.of(out, sensor), named_sensor(sensor)
+    files, system = SimulatedFiles.of(out, sensor), named_sensor(sensor, gsd)
     shape = parse_size(size or "1000,1000")
 
     import numpy as np
@@ -88,6 +89,7 @@ def checkerboard(
     *,
     out: Out,
     sensor: SensorName = "generic-2005",
+    gsd: SensorGsd = None,
     tile: Annotated[
         float, typer.Option(metavar="PX", help="Side of a tile, 16 px or more.")
     ] = 28.0,
@@ -109,7 +111,8 @@ def checkerboard(
     seed: Seed = 0,
 ) -> None:
     """Render a checkerboard of two by two tiles: four edges, two across and two along."""
-    files, shape, system = SimulatedFiles.of(out, sensor), parse_size(size), named_sensor(sensor)
+    files, shape = SimulatedFiles.of(out, sensor), parse_size(size)
+    system = named_sensor(sensor, gsd)
 
     import numpy as np
 
