@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 from acutance.report.paper import figure_bytes
+from acutance.report.table_text import table_latex, table_markdown
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -128,6 +129,14 @@ class Table:
         ]
         length = max(1, -(-len(marked) // self.parts))
         return [marked[i : i + length] for i in range(0, len(marked), length)]
+
+    def to_markdown(self) -> str:
+        """The table in Markdown, its title above it."""
+        return table_markdown(self)
+
+    def to_latex(self) -> str:
+        """The table as a LaTeX ``tabular``."""
+        return table_latex(self)
 
 
 @dataclass(frozen=True)
