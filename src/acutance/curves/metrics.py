@@ -61,7 +61,8 @@ def rer(esf: Esf, lsf: Lsf, centre: RerCentre = "half") -> Reading:
         9b).
     """
     grid = esf.distance_px
-    # The peak is stationary, so its own uncertainty does not move the RER to first order.
+    # The place of the peak counts as known: it moves the RER by the difference of the LSF half a
+    # pixel before and behind it, which is little beside the deviation even of uneven ones.
     middle = esf.half_point if centre == "half" else Reading(_peak(lsf), np.zeros(1))
     before, behind = middle.value - 0.5, middle.value + 0.5
     if not (grid[0] <= before and behind <= grid[-1]):
