@@ -72,7 +72,7 @@ def test_an_image_that_takes_the_place_of_another_is_not_taken_for_it(tmp_path):
     def pairs():
         for place in range(20):
             yield place, np.full((8, 8), float(place)), None
-            gc.collect()
+            gc.collect(0)
 
     for place, copy, _ in in_turn._on_disk(pairs(), tmp_path):
         assert float(copy.read()[0, 0]) == place
