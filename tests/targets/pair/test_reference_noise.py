@@ -1,0 +1,42 @@
+"""The noise of the high image: stated or estimated."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+from pair_scenes import REFERENCE, SYSTEMS
+
+import acutance as ac
+from acutance.curves.grid import Floats
+from acutance.simulate import Noise
+
+
+@cache
+def noisy(ratio: float) -> tuple[Floats, Floats]:
+    """A pair with noise in the high image of 8 % of the contrast, in the low one of 1 %."""
+    low, high, _ = ac.simulate.pair(
+        SYSTEMS["smeared"], REFERENCE, ratio=ratio, shape=(60, 60), shift_px=(0.3, -0.2),
+        noise_low=Noise(10.0), noise_high=Noise(80.0), rng=np.random.default_rng(4),
+    )  # fmt: skip
+    return low, high
+
+
+def measured(ratio: float, stated: float | None = None) -> ac.BiresolutionMeasurement:
+    options = ac.BiresolutionOptions(noise_high=stated)
+    return ac.measure_biresolution(
+        *noisy(ratio), ratio=ratio, reference_mtf=REFERENCE, options=options
+    )
+
+
+@pytest.mark.parametrize("ratio", [2.0, 2.5, 5.0])
+def test_stating_what_was_estimated_changes_nothing(ratio: float) -> None:
+    """Both are of the high image's pixels, whether the kernel acts on these or on others."""
+    estimated = measured(ratio)
+    assert estimated.high_noise == pytest.approx(80.0, rel=0.2)
+    stated = measured(ratio, estimated.high_noise)
+    assert stated.high_noise == pytest.approx(estimated.high_noise)
+    for name in ("across", "along"):
+        one, other = getattr(estimated, name).mtf_nyquist, getattr(stated, name).mtf_nyquist
+        assert other.value == pytest.approx(one.value, abs=0.02 * one.std)
