@@ -1,4 +1,4 @@
-"""The noise of the high image: stated or estimated."""
+"""The noise of the high image: stated or estimated, and how uncertain it is."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from pair_scenes import REFERENCE, SYSTEMS
 import acutance as ac
 from acutance.curves.grid import Floats
 from acutance.simulate import Noise
+from acutance.targets.pair import BIRESOLUTION_METHODS
 
 
 @cache
@@ -23,10 +24,12 @@ def noisy(ratio: float) -> tuple[Floats, Floats]:
     return low, high
 
 
-def measured(ratio: float, stated: float | None = None) -> ac.BiresolutionMeasurement:
+def measured(
+    ratio: float, stated: float | None = None, method: str = "kernel-fit"
+) -> ac.BiresolutionMeasurement:
     options = ac.BiresolutionOptions(noise_high=stated)
     return ac.measure_biresolution(
-        *noisy(ratio), ratio=ratio, reference_mtf=REFERENCE, options=options
+        *noisy(ratio), ratio=ratio, reference_mtf=REFERENCE, method=method, options=options
     )
 
 
@@ -40,3 +43,16 @@ def test_stating_what_was_estimated_changes_nothing(ratio: float) -> None:
     for name in ("across", "along"):
         one, other = getattr(estimated, name).mtf_nyquist, getattr(stated, name).mtf_nyquist
         assert other.value == pytest.approx(one.value, abs=0.02 * one.std)
+
+
+@pytest.mark.parametrize("method", BIRESOLUTION_METHODS)
+def test_the_budget_has_what_another_noise_would_do(method: str) -> None:
+    """Its power is known to 30 %: what more or less of it moves is in the deviation."""
+    low, middle, high = (
+        measured(2.0, 50.0 * share**0.5, method).across.mtf_nyquist.value
+        for share in (0.7, 1.0, 1.3)
+    )
+    assert low < middle < high
+    m = measured(2.0, 50.0, method)
+    row = next(r for r in m.budget if (r.name, r.direction) == ("reference_noise", "across"))
+    assert row.std["mtf_nyquist"] == pytest.approx(0.5 * (high - low), rel=0.25)
