@@ -56,3 +56,19 @@ def test_the_budget_has_what_another_noise_would_do(method: str) -> None:
     m = measured(2.0, 50.0, method)
     row = next(r for r in m.budget if (r.name, r.direction) == ("reference_noise", "across"))
     assert row.std["mtf_nyquist"] == pytest.approx(0.5 * (high - low), rel=0.25)
+
+
+def test_noise_that_leaves_no_number_is_named() -> None:
+    m = measured(2.0, 110.0)
+    shares = [one.std / one.value for one in (m.across.mtf_nyquist, m.along.mtf_nyquist)]
+    check = next(one for one in m.checks if one.name == "high_noise")
+    assert max(shares) > 0.4
+    assert check.value == pytest.approx(max(shares), rel=0.1)
+    assert not check.passed
+    assert check.severity == "caution"
+    assert m.verdict.word == "doubtful"
+
+
+def test_noise_that_is_known_well_enough_is_not_named() -> None:
+    m = measured(2.0, 20.0)
+    assert "high_noise" not in {check.name for check in m.failed_checks}
