@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from closed_form_edge import edge_band, gaussian_pixel_esf, gaussian_pixel_mtf
 
-from acutance.errors import NoEdgeError, PhaseError, SupportError
+from acutance.errors import NoEdgeError, OptionError, PhaseError, SupportError
 from acutance.geometry.line import Line
 from acutance.targets.straight.pixels import EdgePixels
 from acutance.targets.straight.published import (
@@ -14,6 +14,7 @@ from acutance.targets.straight.published import (
     Iso12233Options,
     KompsatOptions,
     SdsuOptions,
+    SdsuPulseOptions,
 )
 
 METHODS = sorted(PUBLISHED)
@@ -225,3 +226,10 @@ def test_no_draws_give_curves_without_deviations(method):
     response = PUBLISHED[method](edge_band(), options).response
     assert response.mtf.factor.shape == (101, 0)
     assert response.mtf_nyquist.std == 0
+
+
+@pytest.mark.parametrize("kind", [SdsuOptions, KompsatOptions, Iso12233Options, SdsuPulseOptions])
+@pytest.mark.parametrize("name", ["replicates", "seed"])
+def test_no_draws_below_zero(kind, name):
+    with pytest.raises(OptionError, match=f"{name} must be 0 or more, found -1"):
+        kind(**{name: -1})

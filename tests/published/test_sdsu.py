@@ -76,6 +76,17 @@ def test_fermi_location_is_exact_for_a_fermi_edge():
     np.testing.assert_allclose(found, centre, atol=1e-6)
 
 
+def test_places_do_not_depend_on_the_unit():
+    """Narrow edges: all but one or two of the seven pixels are on a plateau."""
+    rng = np.random.default_rng(1)
+    centre = rng.uniform(8, 11, 60)
+    rows = 1 / (1 + np.exp((centre[:, None] - np.arange(20)) / 0.15))
+    rows += rng.normal(scale=0.01, size=rows.shape)
+    one, *others = (fermi_locations(unit * rows, centre, 0.3) for unit in (1.0, 1e-9, 1e9))
+    for other in others:
+        np.testing.assert_allclose(other, one, atol=1e-7)
+
+
 def test_fermi_location_survives_a_step_within_one_pixel():
     rows = np.where(np.arange(30) < 15, 100.0, 900.0)[None, :].repeat(4, axis=0)
     found = fermi_locations(rows, np.full(4, 14.4), 0.5)

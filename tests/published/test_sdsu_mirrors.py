@@ -57,6 +57,36 @@ def test_gaussians_sampled_as_points_are_found_exactly():
     assert found.aligned.peak_over_background == pytest.approx(9.0, rel=0.01)
 
 
+@pytest.mark.parametrize("unit", [1.0, 1e-4, 1e-6, 1e4])
+@pytest.mark.parametrize("level", [-300.0, 100.0])
+def test_a_mirror_without_a_width_of_its_own_is_left_out(unit, level):
+    """Two rows hold all of its light: the narrower and the brighter a Gaussian, the better."""
+    places = np.stack([12 + np.arange(6) * 10.2, 12 + np.arange(6) * 1.25], axis=1)
+    rows, cols = np.indices((80, 32))
+    image = level + np.random.default_rng(6).normal(scale=2.0, size=rows.shape)
+    for row, col in places:
+        height = 0.8 if row != places[3, 0] else 0.2
+        image += 900 * np.exp(-0.5 * (((cols - col) / 0.7) ** 2 + ((rows - row) / height) ** 2))
+    middle = round(places[3, 0])
+    image[middle - 1, :] = image[middle, :]
+    found = sdsu_2003_mirrors(unit * image, np.rint(places))
+    (left_out,) = found.left_out
+    assert (left_out.row, left_out.reason) == (middle, "no minimum")
+    assert [one.row for one in found.mirrors] == pytest.approx(np.delete(places[:, 0], 3), abs=0.01)
+    assert found.psf.sigma_x_px == pytest.approx(0.7, abs=0.003)
+    assert found.psf.sigma_y_px == pytest.approx(0.8, abs=0.003)
+    assert found.aligned.rmse == pytest.approx(2.0 * unit, rel=0.2)
+
+
+def test_no_source_with_a_gaussian_says_why():
+    from acutance import SupportError
+
+    image = 100 + np.random.default_rng(2).normal(size=(24, 24))
+    image[12, 12] = np.nan
+    with pytest.raises(SupportError, match=r"none of 1 sources .* are missing: choose"):
+        sdsu_2003_mirrors(image, np.array([[12.0, 12.0]]))
+
+
 def test_a_background_below_zero_has_no_ratio_in_a_document():
     place = np.array([[12.0, 12.0]])
     rows, cols = np.indices((24, 24))

@@ -36,6 +36,12 @@ PAIR_QUESTIONS: Final = {
         "the rest is noise, aliasing and scene differences; choose a region with roads, "
         "shorelines, buildings", "Li et al. 5.2", "note",
     ),
+    "high_noise": Question(
+        "By which share is the MTF at Nyquist uncertain as the high image's noise is?", "<=", 0.1,
+        "its power is taken off what the two have in common, and known to 30 %; state its standard "
+        "deviation (noise_high, --high-noise) if it is not that, or choose a region of more detail",
+        severity="note", caution=0.25,
+    ),
     "pixels": Question(
         "How many low pixels were used?", ">=", 2000.0,
         "the standard deviations fall with their root; choose a larger region", severity="note",

@@ -58,7 +58,8 @@ def test_the_record_is_the_document(measured):
 
 
 def test_details_hold_the_pixels_of_every_source(measured):
-    assert len(measured.details.stamps) == len(measured.sources) == 20
+    assert len(measured.details.stamps) == len(measured.sources)
+    assert len(measured.sources) + len(measured.rejected) == 20
     for source, stamp in zip(measured.sources, measured.details.stamps, strict=True):
         row, col = round(source.row.value), round(source.col.value)
         up, left = row - stamp.origin[0], col - stamp.origin[1]

@@ -16,6 +16,7 @@ from acutance.curves import Estimate
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.raster import Box, Fill, Image
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
+from acutance.targets.pair import tuned
 from acutance.targets.pair.gaussian_fit import GaussianFit
 from acutance.targets.pair.grid import PairGrid
 from acutance.targets.pair.kernel_fit import KernelFit
@@ -34,6 +35,7 @@ PAIR_CHECKS = (
     "reference_directions",
     "correlation",
     "coherence",
+    "high_noise",
     "pixels",
     "left_out",
     "registration_px",
@@ -100,6 +102,7 @@ def check_pair(
         *_reference(model, limits),
         _correlation(gaussian, inverted, limits),
         _coherence(spectra, limits),
+        _high_noise(model, limits),
         *_pixels(fit, limits),
         *_places(gaussian, local, limits),
         *_residuals(fit, model, limits),
@@ -166,6 +169,18 @@ def _coherence(spectra: PairSpectra | None, limits: Limits) -> Check:
         "to row"
     )
     return answer("coherence", min(columns, rows), found, limits)
+
+
+def _high_noise(model: KernelOtf, limits: Limits) -> Check:
+    nyquist, nothing = np.array([NYQUIST_CPP]), np.zeros(1)
+    shares = []
+    for u, v in ((nyquist, nothing), (nothing, nyquist)):
+        std = float(np.linalg.norm(model.by("reference_noise").factor(u, v)))
+        mtf = float(np.abs(model.otf(u, v)[0]))
+        shares.append(std / max(mtf, tuned.MIN_MTF_OF_NOISE))
+    share = min(max(shares), MAX_RATIO)
+    found = f"the high image's noise makes the MTF at Nyquist uncertain by {100 * share:.0f} %"
+    return answer("high_noise", share, found, limits)
 
 
 def _pixels(fit: KernelFit, limits: Limits) -> Iterator[Check]:

@@ -34,7 +34,8 @@ class BiresolutionOptions:
     robust : bool
         Leave out what fits badly: clouds, changes, defects.
     noise_high : float or None
-        Standard deviation of the high image's noise, in its units; None estimates it.
+        Standard deviation of the noise in a pixel of the high image, in its units; None estimates
+        it.
     limits : mapping of str to float
         Limits of checks (`PAIR_CHECKS`), by name, instead of those of the table.
     """

@@ -29,7 +29,6 @@ from acutance.targets.pair.grid import PairGrid, pair_grid
 from acutance.targets.pair.kernel_fit import KernelFit, fit_kernel
 from acutance.targets.pair.kernel_otf import KernelOtf
 from acutance.targets.pair.local import fit_regions
-from acutance.targets.pair.noise import HighNoise
 from acutance.targets.pair.options import BiresolutionOptions
 from acutance.targets.pair.pair_measurement import (
     BiresolutionMeasurement,
@@ -137,7 +136,7 @@ def measure_biresolution(
         left_out=pixel_fit.left_out,
         share_read=tiles.share_read,
         residual_std=pixel_fit.noise,
-        high_noise=pixel_fit.high_noise.std,
+        high_noise=pixel_fit.high_noise.times(1 / tiles.noise_stretch).std,
         coherence=None if spectra is None else Coherence.of(spectra),
         local=local,
         reference_known=reference is not None,
@@ -213,12 +212,11 @@ def _pixel_fit(
     options: BiresolutionOptions,
 ) -> KernelFit:
     """The free kernel that fits the pixels."""
-    stated = options.noise_high
     found = fit_kernel(
         ground, tiles.taps, gaussian,
         reference=reference,
         processes=3 if tiles.reach_px > tuned.HALO_REACH_PX else 2,
-        high_noise=tiles.high_noise if stated is None else HighNoise.of_std(stated),
+        high_noise=tiles.high_noise(options.noise_high),
         robust=options.robust,
     )  # fmt: skip
     return replace(found, left_out=found.left_out + ground.left_out)

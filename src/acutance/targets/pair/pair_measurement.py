@@ -99,7 +99,7 @@ class BiresolutionMeasurement(Measurement):
     residual_std : float
         Robust standard deviation of the residuals, in units of the low image.
     high_noise : float
-        Standard deviation of the reference's noise that was allowed for.
+        Standard deviation of the noise in a pixel of the high image that was allowed for.
     coherence : Coherence or None
         ``None`` where the region has no two windows for spectra.
     local : LocalFit

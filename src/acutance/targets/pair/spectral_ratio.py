@@ -280,10 +280,8 @@ def fit_spectra(spectra: PairSpectra | None, fit: KernelFit, gaussian: GaussianF
     u, v, high = u[chosen], v[chosen], spectra.high.ravel()[chosen]
     # Of a single frequency; half of the noise is in phase.
     precision = 2 * spectra.windows / spectra.noise.ravel()[chosen]
-    clean = np.maximum(
-        high - _noise_power(spectra, fit.high_noise.power, basis.grid) * _flattening(u, v) ** 2,
-        tuned.MAX_NOISE_SHARE * high,
-    )
+    unit = _noise_power(spectra, basis.grid) * _flattening(u, v) ** 2
+    clean = np.maximum(high - fit.high_noise.power * unit, tuned.MAX_NOISE_SHARE * high)
     design = basis.transfer(u, v) * basis.centring(u, v)[:, None]
     cross = spectra.cross.ravel()[chosen]
     weighted = np.conj(design) * precision[:, None]
@@ -302,11 +300,13 @@ def fit_spectra(spectra: PairSpectra | None, fit: KernelFit, gaussian: GaussianF
         for part, power in zip(spectra.part_cross, spectra.part_high, strict=True)
     ]
     moves = response @ (weighted.T @ np.stack(rest, axis=1)).real
+    # What the gram matrix would lose by noise of more power, also where no more was taken off.
+    by_noise = response @ (weighted.T @ (unit * (design @ posterior.beta))).real
     return replace(
         fit, posterior=posterior, whitening=WHITE,
         covariance=KernelCovariance(
             posterior=posterior.factor,
-            reference_noise=np.zeros((basis.size, 1)),
+            reference_noise=fit.high_noise.power_std * by_noise[:, None],
             scatter=moves - moves.mean(axis=1, keepdims=True),
             white=np.sqrt(noise) * response @ square_root(normal.gram),
             beyond=fit.covariance.beyond,
@@ -314,8 +314,8 @@ def fit_spectra(spectra: PairSpectra | None, fit: KernelFit, gaussian: GaussianF
     )  # fmt: skip
 
 
-def _noise_power(spectra: PairSpectra, power: float, grid: TapGrid) -> float:
-    """Power of the reference's noise in a window's spectrum."""
-    samples = spectra.size_px**2 * grid.down.per_px * grid.across.per_px
+def _noise_power(spectra: PairSpectra, grid: TapGrid) -> float:
+    """Power in a window's spectrum of noise of variance 1 in the reference's samples."""
+    per_px = grid.down.per_px * grid.across.per_px
     hann = (3 / 8) ** 2
-    return power * samples * hann / (grid.down.per_px * grid.across.per_px) ** 2
+    return hann * spectra.size_px**2 / per_px

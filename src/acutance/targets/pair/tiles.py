@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -143,19 +144,33 @@ class PairTiles:
         step = max(1, len(self.boxes) // count)
         yield from (self._read(box) for box in self.boxes[::step])
 
-    @cached_property
-    def high_noise(self) -> HighNoise:
-        """The noise in the samples the kernel acts on: of the tile with the median one."""
+    def high_noise(self, stated_std: float | None) -> HighNoise:
+        """The noise in the samples the kernel acts on.
+
+        Parameters
+        ----------
+        stated_std : float or None
+            Standard deviation in a pixel of the high image; None estimates it.
+        """
+        found = self._estimated_noise() if stated_std is None else HighNoise.of_std(stated_std)
+        return found.times(self.noise_stretch)
+
+    def _estimated_noise(self) -> HighNoise:
+        """The noise in a pixel of the high image: of the tile with the median one."""
         step = max(1, len(self.boxes) // 16)
         windows = [self._high_box(box) for box in self.boxes[::step]]
         found = [HighNoise.of_samples(read_data(self.high, window)[0]) for window in windows]
         found = sorted(one for one in found if one.power > 0) or [NO_NOISE]
-        stretch = 1.0
-        for axis in (self.grid.down, self.grid.across):
-            if not axis.is_native:
-                stretch *= axis.per_px / axis.ratio
-        # Interpolated samples share the noise of fewer pixels, or average that of more.
-        return found[len(found) // 2].times(stretch)
+        return found[len(found) // 2]
+
+    @property
+    def noise_stretch(self) -> float:
+        """Power of the noise in a sample over that in a pixel of the high image.
+
+        Interpolated samples share the noise of fewer pixels, or average that of more.
+        """
+        axes = (self.grid.down, self.grid.across)
+        return math.prod(1.0 if axis.is_native else axis.per_px / axis.ratio for axis in axes)
 
     @property
     def parts(self) -> tuple[tuple[Image, Box], tuple[Image, Box]]:

@@ -28,6 +28,7 @@ __all__ = [
     "LOST_WEIGHT",
     "MAX_INFLATION",
     "MAX_NOISE_SHARE",
+    "MIN_MTF_OF_NOISE",
     "MIN_REGIONS",
     "NOISE_POWER_STD",
     "OVERLAP",
@@ -84,6 +85,10 @@ reference does not determine the direction, and dividing by what is left would m
 
 NOISE_POWER_STD: Final = 0.3
 """Relative standard deviation of the reference's noise power, besides what may be texture."""
+
+MIN_MTF_OF_NOISE: Final = 0.1
+"""The smallest MTF at Nyquist that what is uncertain by noise is a share of: of one near zero it is
+a large share, and a good number all the same."""
 
 QUIET_SHARE: Final = 0.25
 """Share of blocks taken for quiet where the reference's noise is estimated."""

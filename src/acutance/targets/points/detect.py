@@ -89,8 +89,8 @@ class RejectedSpot:
     ----------
     row, col : float
     reason : str
-        One of the reasons this module's page names, "no source", "unlike" (the others), or
-        "left out" (not asked for).
+        One of the reasons this module's page names, "no source", "unlike" (the others), "left
+        out" (not asked for), or "no minimum" (no Gaussian of its own, method "gaussian-2003").
     message : str
         What was found there.
     """

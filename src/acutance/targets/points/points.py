@@ -113,7 +113,8 @@ def _fit_gaussians(
         full_scale=_full_scale(shown, region),
     )  # fmt: skip
     return _measurement(
-        "gaussian-2003", found.psf, region, options, sources, rejected, checks=checks,
+        "gaussian-2003", found.psf, region, options, sources, (*rejected, *found.left_out),
+        checks=checks,
         noise_std=found.aligned.background_std, aligned=found.aligned,
         details=PointsDetails(region.pixels, shown, published=found),
     )  # fmt: skip

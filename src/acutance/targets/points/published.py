@@ -28,6 +28,7 @@ from scipy.optimize import least_squares
 from acutance.curves.grid import Floats
 from acutance.errors import OptionError, SupportError
 from acutance.targets.options import require_types
+from acutance.targets.points.detect import RejectedSpot
 
 __all__ = [
     "AlignedFit",
@@ -40,6 +41,7 @@ __all__ = [
 
 Complexes = NDArray[np.complex128]
 _AROUND_PX = 5
+_INCOMPLETE = "pixels of its window or its surroundings are missing"
 
 
 @dataclass(frozen=True)
@@ -161,6 +163,8 @@ class PublishedMirrors:
     x, y, value, residual : (n,) arrays
         The aligned samples, as shares of their peaks, and what the pooled Gaussian leaves.
     aligned : AlignedFit
+    left_out : tuple of RejectedSpot
+        Sources without a Gaussian of their own, in pixels of the image.
     """
 
     mirrors: tuple[MirrorFit, ...]
@@ -170,6 +174,7 @@ class PublishedMirrors:
     value: Floats
     residual: Floats
     aligned: AlignedFit
+    left_out: tuple[RejectedSpot, ...] = ()
 
 
 def sdsu_2003_mirrors(
@@ -188,27 +193,26 @@ def sdsu_2003_mirrors(
     Raises
     ------
     SupportError
-        If no source has all pixels of its window.
+        If no source has a Gaussian of its own; the message has the first one's reason.
     """
     chosen = options or SdsuMirrorsOptions()
     backgrounds = [_surroundings(image, place) for place in places]
-    mirrors = []
+    mirrors, left_out = [], []
     samples = []
     for place, around in zip(places, backgrounds, strict=True):
         found = _fit_mirror(image, place, around, chosen)
-        if found is None:
+        if isinstance(found, RejectedSpot):
+            left_out.append(found)
             continue
         rows, cols, values = _window(image, (found.row, found.col), chosen.window_px)
-        # A fit that left its window for pixels that are not there is no source's.
-        if not np.isfinite(values).all():
-            continue
         mirrors.append(found)
         shares = (values - found.bias) / found.peak
         samples.append((cols - found.col, rows - found.row, shares))
     if not mirrors:
         raise SupportError(
-            f"none of {places.shape[0]} sources has a peak and all pixels of a window of "
-            f"{chosen.window_px} x {chosen.window_px}: choose other sources or method psf-fit"
+            f"none of {places.shape[0]} sources has a Gaussian of its own in a window of "
+            f"{chosen.window_px} x {chosen.window_px} pixels, the first one because "
+            f"{left_out[0].message}: choose other sources or method psf-fit"
         )
     x, y, value = (np.concatenate(part) for part in zip(*samples, strict=True))
     psf, residual = _pool(x, y, value)
@@ -218,7 +222,7 @@ def sdsu_2003_mirrors(
         psf.sigma_x_px, psf.sigma_y_px, peak * float(np.sqrt(np.mean(residual**2))),
         float(around.mean()), float(around.std()), peak,
     )  # fmt: skip
-    return PublishedMirrors(tuple(mirrors), psf, x, y, value, residual, aligned)
+    return PublishedMirrors(tuple(mirrors), psf, x, y, value, residual, aligned, tuple(left_out))
 
 
 def _window(image: Floats, place: tuple[float, float], side: int) -> tuple[Floats, Floats, Floats]:
@@ -241,33 +245,54 @@ def _surroundings(image: Floats, place: Floats) -> Floats:
 
 def _fit_mirror(
     image: Floats, place: Floats, around: Floats, options: SdsuMirrorsOptions
-) -> MirrorFit | None:
+) -> MirrorFit | RejectedSpot:
+    """The Gaussian of one source, or why there is none."""
+
+    def rejected(reason: str, message: str) -> RejectedSpot:
+        return RejectedSpot(float(place[0]), float(place[1]), reason, message)
+
     known = around[np.isfinite(around)]
     rows, cols, values = _window(image, (float(place[0]), float(place[1])), 3)
     if known.size < 8 or not np.isfinite(values).all():
-        return None
-    bias, brightest = float(known.mean()), int(np.argmax(values))
-    peak = float(values[brightest]) - bias
-    if not peak > 0:
-        return None
-    start = np.array([peak, cols[brightest], rows[brightest], 0.7, 0.7])
-    middle = (rows[brightest], cols[brightest])
-    rows, cols, values = _window(image, middle, options.first_window_px)
-    if not np.isfinite(values).all():
-        return None
-    first = _least_squares(lambda p: _gaussian(p, cols, rows) + bias - values, start)
-    rows, cols, values = _window(image, middle, options.window_px)
-    if not np.isfinite(values).all():
-        return None
-    final, covariance = _with_covariance(
-        lambda p: _gaussian(p[:5], cols, rows) + p[5] - values, np.append(first, bias)
+        return rejected("edge", _INCOMPLETE)
+    level, brightest = float(known.mean()), int(np.argmax(values))
+    unit = float(values[brightest]) - level
+    if not unit > 0:
+        return rejected("faint", "its brightest pixel is no brighter than its surroundings")
+    middle = (float(rows[brightest]), float(cols[brightest]))
+    windows = [
+        _window(image, middle, side) for side in (options.first_window_px, options.window_px)
+    ]
+    if not all(np.isfinite(values).all() for _, _, values in windows):
+        return rejected("edge", _INCOMPLETE)
+    # In shares of its own brightest pixel and about that, lest the unit and the place count.
+    (y, x, value), (wide_y, wide_x, wide_value) = (
+        (rows - middle[0], cols - middle[1], (values - level) / unit)
+        for rows, cols, values in windows
     )
-    peak, col, row, sigma_x, sigma_y, bias = final.tolist()
-    inside = max(abs(col - middle[1]), abs(row - middle[0])) <= options.window_px / 2
-    if not (peak > 0 and inside):
-        return None
+    start = np.array([1.0, 0.0, 0.0, 0.7, 0.7])
+    first = _least_squares(lambda p: _gaussian(p, x, y) - value, start)
+    final, covariance = _with_covariance(
+        lambda p: _gaussian(p[:5], wide_x, wide_y) + p[5] - wide_value, np.append(first, 0.0)
+    )
+    peak, col, row, *_, bias = final.tolist()
     std = np.sqrt(np.maximum(covariance.diagonal(), 0.0))
-    return MirrorFit(row, col, float(std[2]), float(std[1]), peak, abs(sigma_x), abs(sigma_y), bias)
+    widths = np.abs(final[3:5])
+    # Light in two rows or columns alone: the narrower and brighter, the better, without end.
+    if not (peak > 0 and np.all(std[3:5] < widths)):
+        return rejected(
+            "no minimum", "its pixels do not determine the width and the peak of a Gaussian"
+        )
+    if max(abs(col), abs(row)) > options.window_px / 2:
+        return rejected("no minimum", "the Gaussian that fits its pixels best lies beside them")
+    row, col = row + middle[0], col + middle[1]
+    # Of the window about the Gaussian's own place, whose pixels are pooled.
+    if not np.isfinite(_window(image, (row, col), options.window_px)[2]).all():
+        return rejected("edge", _INCOMPLETE)
+    return MirrorFit(
+        row, col, float(std[2]), float(std[1]), unit * peak, float(widths[0]), float(widths[1]),
+        level + unit * bias,
+    )  # fmt: skip
 
 
 def _gaussian(p: Floats, x: Floats, y: Floats) -> Floats:
@@ -285,9 +310,11 @@ def _with_covariance(residual: Callable[[Floats], Floats], start: Floats) -> tup
     found = least_squares(residual, start, x_scale=scale, method="lm")
     freedom = max(found.fun.size - start.size, 1)
     variance = float(found.fun @ found.fun) / freedom
-    return np.asarray(found.x, float), np.asarray(
-        variance * np.linalg.pinv(found.jac.T @ found.jac)
-    )
+    # What is not determined has a deviation without bound; a pseudo-inverse would call it exact.
+    size = np.maximum(np.linalg.norm(found.jac, axis=0), 1e-60)
+    _, power, axes = np.linalg.svd(found.jac / size, full_matrices=False)
+    root = axes / np.maximum(power, 1e-60)[:, None] / size
+    return np.asarray(found.x, float), np.asarray(variance * root.T @ root)
 
 
 def _pool(x: Floats, y: Floats, value: Floats) -> tuple[GaussianPsf, Floats]:

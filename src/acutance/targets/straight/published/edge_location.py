@@ -76,18 +76,21 @@ def fermi_locations(value: Floats, expected: Floats, width_px: float) -> Floats:
 def _fit_fermi_rows(points: Floats, width_px: float) -> Floats:
     """Centre of a rising Fermi function in every row of `points` (n, 7), from the middle pixel."""
     x = np.arange(points.shape[1]) - points.shape[1] // 2
-    low, high = points.min(axis=1), points.max(axis=1)
+    low, height = points.min(axis=1), np.ptp(points, axis=1)
+    # In shares of its height every row is the same problem in any unit and on any level.
+    points = (points - low[:, None]) / np.where(height > 0, height, 1.0)[:, None]
     start_width = np.full(low.size, np.log(np.clip(0.55 * width_px, 0.1, 2.0)))
-    unknown = np.stack((np.zeros_like(low), start_width, high - low, low), axis=1)
+    nothing = np.zeros_like(low)
+    unknown = np.stack((nothing, start_width, (height > 0).astype(float), nothing), axis=1)
     damping = np.full(low.size, 1e-3)
     cost = np.sum((points - _fermi_rows(x, unknown)[0]) ** 2, axis=1)
-    settled, exact = np.zeros(low.size, dtype=bool), 1e-20 * (high - low) ** 2
+    settled = np.zeros(low.size, dtype=bool)
     for _ in range(_FERMI_STEPS):
         model, jacobian = _fermi_rows(x, unknown)
         normal = np.einsum("npi,npj->nij", jacobian, jacobian)
         gradient = np.einsum("npi,np->ni", jacobian, points - model)
         scale = np.einsum("nii->ni", normal)
-        scale = np.maximum(scale, 1e-12 * scale.max(axis=1, keepdims=True) + 1e-300)
+        scale = np.maximum(scale, 1e-12 * scale.max(axis=1, keepdims=True))
         damped = normal + (damping[:, None] * scale)[:, :, None] * np.eye(4)
         trial = unknown + np.linalg.solve(damped, gradient[:, :, None])[:, :, 0]
         trial[:, 1] = np.clip(trial[:, 1], np.log(_NARROWEST_PX), np.log(_WIDEST_PX))
@@ -97,7 +100,7 @@ def _fit_fermi_rows(points: Floats, width_px: float) -> Floats:
         unknown = np.where(better[:, None], trial, unknown)
         damping = np.clip(np.where(better, damping / 5, damping * 5), 1e-12, 1e12)
         cost = np.minimum(cost, trial_cost)
-        settled |= (cost <= exact) | (damping > _MAX_DAMPING)
+        settled |= (cost <= 1e-20) | (damping > _MAX_DAMPING)
         if settled.all():
             break
     return np.asarray(unknown[:, 0])

@@ -22,6 +22,7 @@ from acutance.targets.straight.published.resampled_response import (
     FREQ_CPP,
     SampledEdge,
     fit_with_bootstrap,
+    require_draws,
 )
 from acutance.targets.straight.published.row_profiles import LocatedRows, RowLine, locate_rows
 from acutance.targets.straight.published.windows import hamming_window, tukey_window
@@ -49,7 +50,7 @@ class Iso12233Options:
         Share of the Tukey window that is tapered, over 0 to 1; 1 (a Hann window) is what the
         reference program uses.
     replicates : int
-        Draws of the rows for the standard deviations.
+        Draws of the rows for the standard deviations; 0 gives none.
     seed : int
         Of the generator that draws them.
     """
@@ -63,6 +64,7 @@ class Iso12233Options:
 
     def __post_init__(self) -> None:
         require_types(self)
+        require_draws(self.replicates, self.seed)
         if not 1 <= self.bins_per_px <= 16 or not 1 <= self.edge_order <= 5:
             raise OptionError(
                 f"bins_per_px must be 1 to 16 and edge_order 1 to 5, "

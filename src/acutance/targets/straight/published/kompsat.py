@@ -25,6 +25,7 @@ from acutance.targets.straight.published.resampled_response import (
     STEP_PX,
     SampledEdge,
     fit_with_bootstrap,
+    require_draws,
 )
 from acutance.targets.straight.published.row_profiles import LocatedRows, locate_rows
 from acutance.targets.straight.published.smoothing_spline import fit_smoothing_spline
@@ -57,7 +58,7 @@ class KompsatOptions:
         9. None follows the draft: the peak of the line spread function (LSF) with a spline (9b),
         the 50 % point with a Fermi function (9d).
     replicates : int
-        Draws of the rows for the standard deviations.
+        Draws of the rows for the standard deviations; 0 gives none.
     seed : int
         Of the generator that draws them.
     """
@@ -73,6 +74,7 @@ class KompsatOptions:
 
     def __post_init__(self) -> None:
         require_types(self)
+        require_draws(self.replicates, self.seed)
         if not (0 < self.smoothness < 1 and 0 < self.start_smoothness < 1):
             raise OptionError(
                 f"smoothness is {self.smoothness} and start_smoothness {self.start_smoothness}: "

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from acutance.curves import Esf, Lsf, Mtf, Response
 from acutance.curves.grid import Floats, crossing
 from acutance.curves.metrics import RerCentre
-from acutance.errors import AcutanceError, NoEdgeError, SupportError
+from acutance.errors import AcutanceError, NoEdgeError, OptionError, SupportError
 from acutance.geometry.line import Line
 from acutance.targets.straight.pixels import EdgeFit, EdgePixels
 from acutance.targets.straight.published.row_profiles import LocatedRows, RowLine
@@ -36,6 +36,7 @@ __all__ = [
     "edge_fit",
     "fit_with_bootstrap",
     "normalised",
+    "require_draws",
 ]
 
 STEP_PX = 0.05
@@ -201,6 +202,19 @@ def fit_with_bootstrap(
         bright=edge.bright,
         per_normal_px=per_normal_px,
     )
+
+
+def require_draws(replicates: int, seed: int) -> None:
+    """Refuse numbers of draws, and seeds of their generator, that there are not.
+
+    Raises
+    ------
+    OptionError
+        If one is below zero.
+    """
+    for name, value in (("replicates", replicates), ("seed", seed)):
+        if value < 0:
+            raise OptionError(f"{name} must be 0 or more, found {value}")
 
 
 def draw_rows(

@@ -26,6 +26,7 @@ from acutance.targets.straight.published.resampled_response import (
     crossing_of_half,
     fit_with_bootstrap,
     normalised,
+    require_draws,
 )
 from acutance.targets.straight.published.row_profiles import (
     LocatedRows,
@@ -60,7 +61,7 @@ class SdsuOptions:
         none. The reports do not print it; 21 points are one pixel, the window of the
         interpolation.
     replicates : int
-        Draws of the rows for the standard deviations.
+        Draws of the rows for the standard deviations; 0 gives none.
     seed : int
         Of the generator that draws them.
     """
@@ -74,6 +75,7 @@ class SdsuOptions:
 
     def __post_init__(self) -> None:
         require_types(self)
+        require_draws(self.replicates, self.seed)
         if not 4.0 <= self.trim_px <= 40.0:
             raise OptionError(f"trim_px must be 4 to 40 px, found {self.trim_px}")
         frame = self.smoothing_points

@@ -29,6 +29,7 @@ from acutance.targets.straight.published.resampled_response import (
     covariance_factor,
     crossing_of_half,
     draw_rows,
+    require_draws,
 )
 from acutance.targets.straight.published.row_profiles import (
     LocatedRows,
@@ -67,7 +68,7 @@ class SdsuPulseOptions:
     trim_px : float
         Length of the profile that is transformed; 10 px (200 sub-pixels) in the reports.
     replicates : int
-        Draws of the rows for the standard deviations.
+        Draws of the rows for the standard deviations; 0 gives none.
     seed : int
         Of the generator that draws them.
     """
@@ -81,6 +82,7 @@ class SdsuPulseOptions:
 
     def __post_init__(self) -> None:
         require_types(self)
+        require_draws(self.replicates, self.seed)
         if not 6.0 <= self.trim_px <= 40.0:
             raise OptionError(f"trim_px must be 6 to 40 px, found {self.trim_px}")
 
