@@ -72,3 +72,8 @@ def test_noise_that_leaves_no_number_is_named() -> None:
 def test_noise_that_is_known_well_enough_is_not_named() -> None:
     m = measured(2.0, 20.0)
     assert "high_noise" not in {check.name for check in m.failed_checks}
+
+
+def test_more_noise_than_there_is_is_named_in_the_refusal() -> None:
+    with pytest.raises(ac.TargetError, match=r"noise of 240 was stated .* estimated as [78]\d"):
+        measured(2.0, 240.0)

@@ -211,14 +211,29 @@ def _pixel_fit(
     reference: ReferenceOtf | None,
     options: BiresolutionOptions,
 ) -> KernelFit:
-    """The free kernel that fits the pixels."""
-    found = fit_kernel(
-        ground, tiles.taps, gaussian,
-        reference=reference,
-        processes=3 if tiles.reach_px > tuned.HALO_REACH_PX else 2,
-        high_noise=tiles.high_noise(options.noise_high),
-        robust=options.robust,
-    )  # fmt: skip
+    """The free kernel that fits the pixels.
+
+    Raises
+    ------
+    TargetError
+        If they determine none, as less the noise that is stated.
+    """
+    try:
+        found = fit_kernel(
+            ground, tiles.taps, gaussian,
+            reference=reference,
+            processes=3 if tiles.reach_px > tuned.HALO_REACH_PX else 2,
+            high_noise=tiles.high_noise(options.noise_high),
+            robust=options.robust,
+        )  # fmt: skip
+    except TargetError as error:
+        if options.noise_high is None:
+            raise
+        estimated = tiles.high_noise(None).times(1 / tiles.noise_stretch).std
+        raise TargetError(
+            f"{error}; a noise of {options.noise_high:g} was stated of the high image, whose own "
+            f"is estimated as {estimated:.3g}: state less (noise_high, --high-noise), or none"
+        ) from error
     return replace(found, left_out=found.left_out + ground.left_out)
 
 
