@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from acutance.archive.counted import counted
+from acutance.archive.elsewhere import ELSEWHERE
 from acutance.archive.packing import plain_json
 from acutance.batch.reason_words import UNREADABLE, in_words
 from acutance.batch.selected_bands import Band, without_band
@@ -24,8 +25,6 @@ __all__ = ["BatchSummary", "Tally"]
 NO_FILE = "no such file"
 """Why an image that is not there has no measurement."""
 VERDICTS = ("good", "usable", "doubtful", "invalid")
-_ELSEWHERE = ("outside", "not there then")
-"""Rejections of targets that the image does not show: nothing went wrong."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +101,7 @@ class BatchSummary(ShortRepr):
     @property
     def failed(self) -> int:
         """Rows that ``--strict`` objects to: rejected in their image, doubtful or invalid."""
-        elsewhere = sum(self.reasons.get(one, 0) for one in _ELSEWHERE)
+        elsewhere = sum(self.reasons.get(one, 0) for one in ELSEWHERE)
         weak = self.verdicts.get("doubtful", 0) + self.verdicts.get("invalid", 0)
         return self.rejected - elsewhere + weak
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from acutance.archive import Archive
+from acutance.archive.elsewhere import elsewhere
 from acutance.archive.requirement_selection import asked_of, asks_nothing
 from acutance.archive.specification import read_specification
 from acutance.curves import MAIN_NUMBERS
@@ -124,7 +125,11 @@ def sensor_page(
 
 def _facts(every: Measurements, rejected: Rejections, used: Measurements) -> dict[str, str]:
     measured, taken = (len(set(part["id"].tolist())) for part in (every, used))
-    return {"measured": str(measured), "used": str(taken), "rejected": str(len(rejected))}
+    absent = sum(elsewhere(one) is not None for one in rejected["values"].tolist())
+    counts = {"measured": measured, "used": taken, "rejected": len(rejected) - absent}
+    # Of many targets in many images most pairs are none: that is no failure of the sensor's images.
+    counts |= {"not in their images": absent} if absent else {}
+    return {name: str(count) for name, count in counts.items()}
 
 
 def _answer_sections(
