@@ -231,6 +231,8 @@ def _text(found: BatchSummary) -> str:
         *_named(f"unreadable: {_fault(*one)}" for one in found.faults.items()),
         *_named(f"measured once: {path} and {other} have the same content"
                 for path, other in found.copies.items()),
+        *_named(f"restored: {path}, by its own word: numbers are those of the restored product"
+                for path in found.restored),
     ]  # fmt: skip
     if found.rejected:
         lines.append(

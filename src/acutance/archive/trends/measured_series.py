@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from acutance.archive.columns import Columns
 from acutance.archive.natural_order import natural_key
+from acutance.archive.restored_images import restored_notes
 from acutance.archive.trends.gsd import SAME_GSD, gsd_classes
 from acutance.archive.trends.series import Series
 from acutance.curves import MAIN_NUMBERS, METRICS
@@ -195,7 +196,7 @@ def _series(rows: Columns, metric: str, mask: NDArray[np.bool_], size: str | Non
         systematic_std=systematic, image=image, gsd_m=pixel_side_m(rows)[mask],
         image_names={number: name for number, name in names.items() if name is not None},
         name=_title(rows, mask, size, rows["orientation"][mask][0]),
-        notes=(*_unnamed(rows, mask), *_mixed(rows, mask)),
+        notes=(*_unnamed(rows, mask), *_mixed(rows, mask), *restored_notes(rows, mask)),
     )  # fmt: skip
 
 
