@@ -7,6 +7,7 @@ import shlex
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -209,6 +210,7 @@ def _logged(name: str | None) -> Iterator[Callable[[Sequence[Entry]], None] | No
 def _line(entry: Entry) -> dict[str, Any]:
     record, rejected = entry.record, entry.rejected
     return {
+        "time": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ}",
         "key": entry.key,
         "image": entry.image.path,
         "target": None if entry.target is None else entry.target.name,

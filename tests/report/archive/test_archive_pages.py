@@ -307,7 +307,10 @@ def test_a_sensor_without_a_name_has_a_title_and_the_note_of_the_check(tmp_path,
     for answer, images in zip(answers, (4, 2), strict=True):
         note = f"No sensor and no band is named: {images} images are taken to be of one."
         assert note in answer.reason
+        assert answer.summary.startswith("images without a sensor, GSD ")
         assert f"<b>note</b>: {note}" in page
+    # The page is of them, and does not say it again of every number.
+    assert "images without a sensor, " not in page
 
 
 def test_bands_are_in_the_order_of_their_numbers(tmp_path, edge_record):

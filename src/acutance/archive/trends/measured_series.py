@@ -21,6 +21,7 @@ from acutance.curves.grid import Floats
 from acutance.errors import NothingSelectedError, OptionError
 
 __all__ = [
+    "NO_SENSOR",
     "all_series",
     "by_gsd",
     "gsd_words",
@@ -30,6 +31,9 @@ __all__ = [
     "unmeasured_directions",
     "years_of",
 ]
+
+NO_SENSOR = "images without a sensor"
+"""What series of them are called by."""
 
 _PRODUCT = ("sensor", "band", "level")
 _ONE_OF = (*_PRODUCT, "orientation")
@@ -170,7 +174,7 @@ def _require_metric(metric: str) -> None:
 def _title(rows: Columns, mask: NDArray[np.bool_], size: str | None, orientation: str) -> str:
     """What the rows of a mask are of: "QB02, pan, across"."""
     sensor, band, level = (rows[name][mask][0] for name in _PRODUCT)
-    parts = (sensor, _band_words(band), level, size, orientation)
+    parts = (sensor or NO_SENSOR, _band_words(band), level, size, orientation)
     return ", ".join(str(part) for part in parts if part is not None)
 
 

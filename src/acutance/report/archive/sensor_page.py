@@ -13,6 +13,7 @@ from acutance.archive import Archive
 from acutance.archive.elsewhere import elsewhere
 from acutance.archive.requirement_selection import asked_of, asks_nothing
 from acutance.archive.specification import read_specification
+from acutance.archive.trends.measured_series import NO_SENSOR
 from acutance.curves import MAIN_NUMBERS
 from acutance.curves.metric_words import METRIC_WORDS
 from acutance.errors import NothingSelectedError, OptionError
@@ -190,7 +191,7 @@ def _trend_sections(
 
 def _limit_of(state: SeriesState, check: SpecificationCheck | None, sensor: str) -> float | None:
     """The limit that a requirement sets for a series."""
-    own = ", ".join(filter(None, (sensor, state.name)))
+    own = ", ".join(filter(None, (sensor or NO_SENSOR, state.name)))
     for answer in check.answers if check else ():
         if answer.requirement.metric == state.metric and answer.what == own:
             return answer.requirement.limit
