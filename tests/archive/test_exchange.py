@@ -235,6 +235,30 @@ def test_the_box_of_a_stac_item_is_narrow_beyond_the_antimeridian(
     assert item.bbox == [west, -17.0, east, -18.0 + len(lons)]
 
 
+@pytest.mark.parametrize("why", ["outside", "not there then"])
+def test_a_stac_item_has_no_targets_that_its_image_does_not_show(entry_of, tmp_path, why):
+    pystac = pytest.importorskip("pystac")
+    here, there = (
+        TargetEntry(name=name, kind="edge", lon=lon, lat=51.9)
+        for name, lon in (("brazil", -46.6), ("rotterdam", 4.4))
+    )
+    absent = ac.Rejected("region", "the target lies at row -348936", {"why": why})
+    lost = ac.Rejected("find", "no straight edge is there", {"why": "not found"})
+    with Archive(tmp_path / "kept.db") as archive:
+        archive.add_entries([
+            entry_of(0, target=here),
+            entry_of(0, target=here, record=None, rejected=lost),
+            entry_of(0, target=there, record=None, rejected=absent),
+        ])  # fmt: skip
+        assert archive.export(tmp_path / "stac", to="stac") == 3
+    (item,) = pystac.Catalog.from_file(str(tmp_path / "stac" / "catalog.json")).get_items()
+    assert item.bbox == [-46.6, 51.9, -46.6, 51.9]
+    assert [one["target"] for one in item.properties["mtf:rejected"]] == ["brazil"]
+    # The documents lose nothing.
+    lines = (tmp_path / "stac").glob("*/measurements.jsonl")
+    assert len(next(lines).read_text().splitlines()) == 3
+
+
 def test_stac_needs_a_date_and_a_new_folder(archive, edge_record, entry_of, tmp_path):
     archive.add(edge_record)
     with pytest.raises(OptionError, match="has no date"):

@@ -279,18 +279,18 @@ def test_values_that_cannot_be_are_refused(values: dict[str, Any], message: str)
 def test_corrections_of_a_file(tmp_path: Any) -> None:
     table = tmp_path / "corrections.csv"
     table.write_text(
-        "image, sensor,acquired,gsd_row_m,gsd_col_m,view_zenith_deg\n"
-        "0.tif, K3A ,2026-05-01,0.72,0.7,\n\n1.tif, ,,,,12.5\n"
+        "image, sensor,acquired,gsd_row_m,gsd_col_m,view_zenith_deg,band\n"
+        "0.tif, K3A ,2026-05-01,0.72,0.7,\n\n1.tif, ,,,,12.5,8\n"
     )
     expected = [
         ImageCorrection(image="0.tif", sensor="K3A", acquired="2026-05-01", gsd_m=(0.72, 0.7)),
-        ImageCorrection(image="1.tif", view_zenith_deg=12.5),
+        ImageCorrection(image="1.tif", view_zenith_deg=12.5, band="8"),
     ]
     assert read_correction_file(table) == expected
     lines = tmp_path / "corrections.json"
     lines.write_text(json.dumps([
         {"image": "0.tif", "sensor": "K3A", "acquired": "2026-05-01", "gsd_m": [0.72, 0.7]},
-        {"image": "1.tif", "view_zenith_deg": 12.5, "sensor": None},
+        {"image": "1.tif", "view_zenith_deg": 12.5, "sensor": None, "band": "8"},
     ]))  # fmt: skip
     assert read_correction_file(lines) == expected
     assert expected[0].columns["acquired"].date() == date(2026, 5, 1)
@@ -315,3 +315,39 @@ def test_all_faults_of_a_file_are_named(tmp_path: Any) -> None:
     (tmp_path / "bad.json").write_text("[1]")
     with pytest.raises(OptionError, match="entry 1 is no object"):
         read_correction_file(tmp_path / "bad.json")
+
+
+@pytest.fixture
+def in_band(entry_of: Any, edge_record: Record) -> Any:
+    """Makes the entry of number i measured in a band, by its number, without a name."""
+
+    def make(i: int, number: int = 1) -> Any:
+        image = {**edge_record.document["image"], "band": number, "band_name": None}
+        record = Record({**edge_record.document, "image": image})
+        return entry_of(i, record=record, band=None, key=f"{i} {number}")
+
+    return make
+
+
+def test_rows_without_a_band_get_its_name(archive: Archive, in_band: Any, entry_of: Any) -> None:
+    archive.add_entries([in_band(0), in_band(1), in_band(2), entry_of(3, band="red")])
+    named = ImageCorrection(image="*.tif", band="pan", reason="one band")
+    told = archive.correct_images([named], dry_run=True)
+    assert set(archive.measurements()["band"].tolist()) == {None, "red"}
+    done = archive.correct_images([named])
+    assert done == told
+    assert [one.changes for one in done] == [{"band": (None, "pan")}] * 2
+    assert archive.measurements()["band"].tolist() == ["pan", "pan", "pan", "red"]
+    # Noted, also after another correction, and neither made nor added twice.
+    archive.correct_images([ImageCorrection(image="0.tif", level="L1")])
+    sources = next(iter(archive.entries(image="0.tif"))).image.sources
+    assert [one["column"] for one in sources["corrections"]] == ["band", "level"]
+    assert archive.correct_images([named]) == []
+    assert archive.add_entries([in_band(0), in_band(2)]) == 0
+
+
+def test_two_bands_do_not_become_one(archive: Archive, in_band: Any) -> None:
+    archive.add_entries([in_band(0, 1), in_band(1, 2), in_band(2)])
+    with pytest.raises(OptionError, match=r"/images/0\.tif was measured in bands 1 and 2"):
+        archive.correct_images([ImageCorrection(image="*.tif", band="pan")])
+    assert archive.measurements()["band"].tolist() == [None] * 3

@@ -18,6 +18,7 @@ from acutance.batch import BatchPlan
 from acutance.batch.image_list import content_of
 from acutance.batch.plan import StatedOfImages
 from acutance.batch.reason_words import in_words, words_of
+from acutance.cli.batch import _text
 from acutance.errors import (
     ArchiveError,
     FewEdgesError,
@@ -84,6 +85,16 @@ def test_a_date_to_the_day_dates_the_rows(write_field, run, rows):
     run(write_field(0, tags={"SENSOR": "S", "ACQUISITION_DATE": "2026-01-05"}))
     measured, _ = rows()
     assert {str(one)[:16] for one in measured["acquired"]} == {"2026-01-05T00:00"}
+
+
+def test_restored_images_are_named_and_noted(write_field, run, rows):
+    tags = {"SENSOR": "SIM-1", "ACUTANCE_RESTORATION": "wiener kernel 11x11; bands 1; gain 1.8"}
+    paths = [write_field(0), write_field(1, tags=tags)]
+    done = run(*paths)
+    assert done.restored == (str(paths[1]),)
+    assert f"restored: {paths[1]}" in _text(done)
+    measured, _ = rows()
+    assert set(measured["image"][measured["restored"]].tolist()) == {"field-1.tif"}
 
 
 def test_what_is_done_is_not_done_again_and_not_even_opened(write_field, run, monkeypatch):

@@ -2,6 +2,7 @@
 
 import json
 import shlex
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import numpy as np
@@ -92,6 +93,9 @@ def test_a_log_has_a_line_for_every_row(acutance, given, tmp_path):
     found = json.loads(line)
     assert (found["target"], found["verdict"], found["reason"]) == ("edge", "good", None)
     assert len(found["key"]) == 64
+    age = datetime.now(UTC) - datetime.fromisoformat(found["time"])
+    assert found["time"].endswith("Z")
+    assert age < timedelta(minutes=10)
 
 
 def test_a_plan(acutance, tmp_path, edge_image, refused):

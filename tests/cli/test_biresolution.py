@@ -121,6 +121,7 @@ def test_strict_and_limits(acutance, pair):
         (("--stop", 2), "between 0 and 1"),
         (("--limit", "edges=3"), "no check 'edges' to limit (limits, --limit), only "),
         (("--high-band", 2), "band 2"),
+        (("--high-band", "B8"), "band 'B8' is not the number of a band, from 1 to 1"),
         (("--roi", "0,0,12,12"), "larger"),
         (("--covariance",), "add --json"),
     ],

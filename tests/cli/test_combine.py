@@ -80,3 +80,10 @@ def test_wrong_files_are_exit_2(acutance, files, tmp_path, content, message):
 @pytest.mark.parametrize("width", ["wide", "0", "1,2,3"])
 def test_a_detector_that_is_none_is_exit_2(acutance, files, width):
     assert acutance("combine", *files, "--detector", width).exit_code == 2
+
+
+def test_the_help_speaks_of_one_result(acutance):
+    shown = " ".join(acutance("combine", "--help").stdout.split())
+    assert "Draw the result: .png, .svg or .pdf." in shown
+    assert "Of several" not in shown
+    assert "Of several" in " ".join(acutance("edge", "--help").stdout.split())

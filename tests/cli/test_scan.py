@@ -151,7 +151,7 @@ def test_a_page_is_of_the_scene(acutance, scene, tmp_path, shown, few_forms):
         (("--workers", "0"), "workers", 2),
         (("--field", "3"), "--field 3 is no grid", 2),
         (("--field", "3x99"), "places (--field) is 3 x 99", 2),
-        (("--band", "1,x"), "--band x is not the number of a band", 2),
+        (("--band", "1,x"), "band 'x' is not the number of a band", 2),
         (("--band", "1,"), "(nothing) is not the number of a band", 2),
         (("--band", "1,1"), "give the number of every band once", 2),
         (("--band", "1,4"), "band 4 of", 2),

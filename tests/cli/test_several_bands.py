@@ -8,7 +8,7 @@ import pytest
 import acutance as ac
 from acutance import optics, simulate
 from acutance.archive import Archive
-from acutance.raster import write_geotiff
+from acutance.raster import open_bands, write_geotiff
 from acutance.raster.dataset import open_quietly
 
 SENSORS = [optics.Sensor([optics.Gaussian(size), optics.Detector()]) for size in (0.35, 0.5)]
@@ -134,6 +134,7 @@ def test_bands_are_called_by_their_names(acutance, refused, named, tmp_path):
     done = acutance("edge", named, "--band", "1,B3,3", "--json")
     document = json.loads(done.stdout)
     assert [part["band"] for part in document["results"]] == ["1", "2"]
+    assert [part["band_name"] for part in document["results"]] == ["B2", "B3"]
     assert [part["values"] for part in document["rejected"]] == [{"band": "3", "band_name": "B4"}]
     assert "acutance: band 3 (B4): " in done.stderr
     refused(("edge", named, "--band", "red"), "named.tif are B2, B3, B4")
@@ -143,6 +144,27 @@ def test_bands_are_called_by_their_names(acutance, refused, named, tmp_path):
     with Archive(tmp_path / "kept.db", read_only=True) as archive:
         assert sorted(archive.measurements()["band"]) == ["B2", "B3"]
         assert list(archive.rejected()["band"]) == ["B4"]
+
+
+def test_bands_are_opened_by_their_names(named):
+    assert ac.open_image(named, band="b3").band_label == "2 (B3)"
+    assert [one.band for one in open_bands(named, bands=["B4", 1])] == [3, 1]
+    with pytest.raises(ac.errors.ImageError, match=r"band 'B9' .* are B2, B3, B4"):
+        ac.open_image(named, band="B9")
+    with pytest.raises(ac.errors.OptionError, match="every band once"):
+        open_bands(named, bands=["B3", 2])
+
+
+def test_the_band_of_a_finer_image_is_called_by_its_name(acutance, named, tmp_path, monkeypatch):
+    seen = []
+
+    def noted(path, band, nodata=None):
+        seen.append(band)
+        raise ac.errors.ImageError("seen")
+
+    monkeypatch.setattr("acutance.raster.open_image", noted)
+    acutance("biresolution", named, named, "--high-band", "B3")
+    assert seen == ["B3"]
 
 
 def test_an_image_lists_its_bands(acutance, image, named):

@@ -158,7 +158,7 @@ def test_bands_are_chosen_from_one(pixels, write_raster):
 def test_a_band_is_a_number(pixels, write_raster, tmp_path, name, band):
     path = write_raster("a.tif", pixels)
     np.save(tmp_path / "a.npy", pixels)
-    with pytest.raises(ImageError, match=rf"band {re.escape(repr(band))} of .*{name} .*, from 1"):
+    with pytest.raises(ImageError, match=rf"band {re.escape(repr(band))} .*, from 1"):
         open_image(path.replace("a.tif", name), band=band)
 
 

@@ -22,6 +22,7 @@ from acutance.archive.measurements import (
 from acutance.archive.migrations import ensure_schema
 from acutance.archive.overview import Overview, overview_of
 from acutance.archive.questions import Questions
+from acutance.archive.restored_images import restored_sources
 from acutance.archive.rows_of_runs import RowsOfRuns
 from acutance.archive.selection import Selection, SelectionWords
 from acutance.archive.stored_entries import select_ids, stored_entries
@@ -146,6 +147,7 @@ class Archive(Questions, RowsOfRuns):
                 sensor=sensor,
                 acquired=None if acquired is None else as_utc(acquired, "acquired"),
                 gsd_m=record.image.pixel_gsd_m,
+                sources=restored_sources(record),
             )
         if target is None:
             target = record.image.region

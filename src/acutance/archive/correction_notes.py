@@ -19,13 +19,19 @@ from acutance.archive.packing import plain_json
 from acutance.archive.tables import images
 from acutance.raster.metadata.findings import ANGLES
 
-__all__ = ["COLUMNS", "has_notes", "next_moment", "share_corrections", "with_notes", "write_rows"]
+__all__ = [
+    "BAND", "COLUMNS", "has_notes", "next_moment", "share_corrections", "with_notes", "write_rows",
+]  # fmt: skip
 
 COLUMNS: Final = ("sensor", "level", "acquired", "gsd_row_m", "gsd_col_m", *ANGLES)
 """Columns of the table of images that can be corrected."""
 
+BAND: Final = "band"
+"""What is corrected of the rows of an image: no column of its own."""
+
 _NOTES: Final = "corrections"
-_TEXTS: Final = ("sensor", "level")
+_TEXTS: Final = ("sensor", "level", BAND)
+_NOTED: Final = (*COLUMNS, BAND)
 
 Row = Mapping[str, Any]
 Note = Mapping[str, Any]
@@ -107,9 +113,10 @@ def _corrected(row: Row, notes: Sequence[Note] | None) -> Row:
     """A row with the values of its notes, which are in the order of their dates."""
     if notes is None:
         return row
-    values = {note["column"]: _value_of(note) for note in notes}
+    own = [note for note in notes if note["column"] != BAND]
+    values = {note["column"]: _value_of(note) for note in own}
     sources = {
-        _source_word(note["column"]): f"corrected on {_moment_of(note):%Y-%m-%d}" for note in notes
+        _source_word(note["column"]): f"corrected on {_moment_of(note):%Y-%m-%d}" for note in own
     }
     return {**row, **values, "sources": {**row["sources"], **sources, _NOTES: list(notes)}}
 
@@ -120,7 +127,7 @@ def _joined(several: Iterable[Row]) -> list[Note]:
     each = {json.dumps(note, sort_keys=True): note for note in notes}
 
     def order(text: str) -> tuple[datetime, int, str]:
-        return _moment_of(each[text]), COLUMNS.index(each[text]["column"]), text
+        return _moment_of(each[text]), _NOTED.index(each[text]["column"]), text
 
     return [each[text] for text in sorted(each, key=order)]
 
@@ -155,7 +162,7 @@ def _value_of(note: Note) -> Any:
     name, value = note["column"], note["after"]
     if name == "acquired":
         return as_utc(value, name)
-    if name not in COLUMNS or not isinstance(value, str if name in _TEXTS else int | float):
+    if name not in _NOTED or not isinstance(value, str if name in _TEXTS else int | float):
         raise TypeError(f"{value!r} is no {name}")
     return value if name in _TEXTS else float(value)
 

@@ -1,4 +1,4 @@
-"""What is known of images that are kept already is corrected: dates, sensors, levels, GSD, angles.
+"""What is known of images that are kept is corrected: dates, sensors, levels, GSD, angles, bands.
 
 The row of an image keeps the identity it was added with: a batch that adds to the image later, and
 knows it as before, finds the corrected row and measures nothing again. One that knows it otherwise
@@ -19,8 +19,9 @@ from typing import Any, Final
 
 from sqlalchemy import Connection, Select, func, select
 
+from acutance.archive.band_corrections import name_bands, require_one_band, unnamed_rows
 from acutance.archive.connection import Database
-from acutance.archive.correction_notes import next_moment, with_notes, write_rows
+from acutance.archive.correction_notes import BAND, next_moment, with_notes, write_rows
 from acutance.archive.counted import counted
 from acutance.archive.dates import When, as_utc
 from acutance.archive.named_images import ImageKey, named_images
@@ -37,7 +38,7 @@ __all__ = [
     "correct_images",
 ]
 
-CORRECTED: Final = ("sensor", "level", "acquired", "gsd_m", *ANGLES)
+CORRECTED: Final = ("sensor", "level", BAND, "acquired", "gsd_m", *ANGLES)
 """What of an image can be corrected."""
 _SAME_GSD: Final = 1e-6
 _CHUNK: Final = 2000
@@ -60,6 +61,9 @@ class ImageCorrection:
     gsd_m : float or (float, float), optional
         From row to row and from column to column.
     view_zenith_deg, view_azimuth_deg, sun_elevation_deg, sun_azimuth_deg : float, optional
+    band : str, optional
+        The name of the band, of rows that were added without one: of images that were measured in
+        a single band, by its number.
     reason : str, optional
         Kept with the correction.
 
@@ -83,6 +87,7 @@ class ImageCorrection:
     view_azimuth_deg: float | None = None
     sun_elevation_deg: float | None = None
     sun_azimuth_deg: float | None = None
+    band: str | None = None
     reason: str | None = None
 
     def __post_init__(self) -> None:
@@ -91,7 +96,7 @@ class ImageCorrection:
             raise OptionError(f"the correction of {self.image!r}: {'; '.join(faults)}")
 
     def _faults(self) -> Iterator[str]:
-        for name in ("image", "sensor", "level", "reason"):
+        for name in ("image", "sensor", "level", BAND, "reason"):
             value = getattr(self, name)
             if value is not None and not (isinstance(value, str) and value):
                 yield f"{name} is {value!r}: write a text"
@@ -122,8 +127,8 @@ class ImageCorrection:
 
     @property
     def columns(self) -> dict[str, Any]:
-        """Columns of the table of images with their new values."""
-        found = {name: getattr(self, name) for name in ("sensor", "level", *ANGLES)}
+        """Columns of the table of images, and the band of their rows, with their new values."""
+        found = {name: getattr(self, name) for name in ("sensor", "level", BAND, *ANGLES)}
         if self.acquired is not None:
             found["acquired"] = as_utc(self.acquired, "acquired")
         if self.gsd_m is not None:
@@ -210,7 +215,8 @@ def correct_images(
     Raises
     ------
     OptionError
-        If a correction means no image, or a file name that several have: nothing is changed.
+        If a correction means no image, a file name that several have, or names the band of an
+        image that was measured in several: nothing is changed.
     ArchiveError
         If the archive cannot be written.
     """
@@ -236,9 +242,14 @@ def _correct(
     connection: Connection, wanted: Mapping[ImageKey, _Wanted], dry_run: bool
 ) -> list[CorrectedImage]:
     changed = []
-    for row in _kept_rows(connection, wanted, lock=not dry_run):
-        values, reasons = wanted[row["content"] or row["id"]]
-        changes = {name: (row[name], value) for name, value in values.items() if row[name] != value}
+    rows = _kept_rows(connection, wanted, lock=not dry_run)
+    bands = {row["id"]: band for row in rows if (band := _wanted_of(row, wanted)[0].get(BAND))}
+    require_one_band(connection, [row for row in rows if row["id"] in bands])
+    unnamed = unnamed_rows(connection, bands)
+    for row in rows:
+        values, reasons = _wanted_of(row, wanted)
+        before = {**row, BAND: None if row["id"] in unnamed else values.get(BAND)}
+        changes = {name: (before[name], new) for name, new in values.items() if before[name] != new}
         if changes:
             changed.append((row, changes, reasons))
     ids = [row["id"] for row, _, _ in changed]
@@ -247,6 +258,7 @@ def _correct(
     if not dry_run:
         now = next_moment(row for row, _, _ in changed)
         write_rows(connection, [with_notes(row, new, why, now) for row, new, why in changed])
+        name_bands(connection, {number: bands[number] for number in unnamed})
     return [
         CorrectedImage(
             row["id"], row["path"] or row["content"] or f"image {row['id']}", changes,
@@ -254,6 +266,10 @@ def _correct(
         )
         for row, changes, _ in changed
     ]  # fmt: skip
+
+
+def _wanted_of(row: Mapping[str, Any], wanted: Mapping[ImageKey, _Wanted]) -> _Wanted:
+    return wanted[row["content"] or row["id"]]
 
 
 def _kept_rows(

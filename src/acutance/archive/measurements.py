@@ -11,12 +11,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
-from sqlalchemy import Column, Connection, Select, select
+from sqlalchemy import Column, ColumnElement, Connection, Select, select
 
 from acutance.archive.columns import Columns
 from acutance.archive.connection import Database
 from acutance.archive.counted import counted
 from acutance.archive.packing import unpacked
+from acutance.archive.restored_images import RESTORED_COLUMN
 from acutance.archive.selection import Selection
 from acutance.archive.tables import (
     VERDICTS,
@@ -48,10 +49,10 @@ class Measurements(Columns):
     ``snr``, ``normal_deg`` (the direction of the numbers, from the column axis towards the row
     axis, -90 to 90; ``angle_deg`` is the same, as tables were first written), ``gsd_m`` (along the
     direction), ``gsd_row_m`` and ``gsd_col_m`` (the sides of the image's pixels, along a column and
-    along a row), ``view_zenith_deg``, ``sun_elevation_deg``, ``measured_at``, and every metric with
-    its standard deviation (``mtf_nyquist``, ``mtf_nyquist_std``, ...). Of the three main numbers
-    also what of it does not average out over images (``rer_systematic_std``,
-    `acutance.archive.systematic`).
+    along a row), ``view_zenith_deg``, ``sun_elevation_deg``, ``measured_at``, ``restored`` (whether
+    the image was restored or sharpened before, by its notes), and every metric with its standard
+    deviation (``mtf_nyquist``, ``mtf_nyquist_std``, ...). Of the three main numbers also what of it
+    does not average out over images (``rer_systematic_std``, `acutance.archive.systematic`).
 
     Parameters
     ----------
@@ -127,7 +128,7 @@ _SHARED: tuple[tuple[str, Column[Any]], ...] = (
     ("view_zenith_deg", images.c.view_zenith_deg),
     ("sun_elevation_deg", images.c.sun_elevation_deg),
 )
-_MEASURED: tuple[tuple[str, Column[Any]], ...] = (
+_MEASURED: tuple[tuple[str, ColumnElement[Any]], ...] = (
     ("orientation", directions.c.orientation),
     ("verdict", measurements.c.verdict),
     ("snr", measurements.c.snr),
@@ -137,6 +138,7 @@ _MEASURED: tuple[tuple[str, Column[Any]], ...] = (
     ("gsd_row_m", images.c.gsd_row_m),
     ("gsd_col_m", images.c.gsd_col_m),
     ("measured_at", measurements.c.measured_at),
+    ("restored", RESTORED_COLUMN),
     *((name, directions.c[name]) for name in (*metric_columns(), *systematic_columns())),
 )
 _REJECTED: tuple[tuple[str, Column[Any]], ...] = (
@@ -232,6 +234,8 @@ def _column(name: str, values: Sequence[Any]) -> NDArray[Any]:
         return texts
     if name in _MOMENTS:
         return np.array([_without_zone(one) for one in values], "datetime64[us]")
+    if name == "restored":
+        return np.array(values, bool)
     return np.array(values, np.int64 if name in _WHOLE else float)
 
 

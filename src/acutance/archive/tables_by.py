@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from acutance.archive.columns import Columns
 from acutance.archive.measurements import Measurements
 from acutance.archive.natural_order import natural_key
+from acutance.archive.restored_images import restored_notes
 from acutance.archive.trends.images import mean_of_images
 from acutance.archive.trends.measured_series import random_and_systematic
 from acutance.archive.trends.series import Series
@@ -87,11 +88,14 @@ class MeasurementTable:
     metrics : tuple of str
     rows : tuple of TableRow
         In the order of their groups, averages after them.
+    image_notes : tuple of str
+        What is peculiar about images of the means.
     """
 
     by: tuple[str, ...]
     metrics: tuple[str, ...]
     rows: tuple[TableRow, ...]
+    image_notes: tuple[str, ...] = ()
 
     @property
     def columns(self) -> tuple[tuple[str, str], ...]:
@@ -108,7 +112,11 @@ class MeasurementTable:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What has to be known of the deviations to read them."""
+        """What has to be known of images and deviations to read the means."""
+        return (*self.image_notes, *self._deviation_notes)
+
+    @property
+    def _deviation_notes(self) -> tuple[str, ...]:
         if not any(count > 1 for row in self.rows for count in row.counts.values()):
             return ()
         return (_MEANS, _SINGLE) if any(map(_single_cells, self.rows)) else (_MEANS,)
@@ -123,7 +131,10 @@ class MeasurementTable:
 
     def texts(self) -> Iterator[tuple[str, ...]]:
         """The rows as text; where some cells are means, those of one measurement have a star."""
-        sides, is_mixed = [title.partition(" ")[2] for title in self._image_header], self.notes
+        sides, is_mixed = (
+            [title.partition(" ")[2] for title in self._image_header],
+            self._deviation_notes,
+        )
         for row in self.rows:
             images = (row.images_by.get(side, 0) if side else row.images for side in sides)
             starred = _single_cells(row) if is_mixed else set()
@@ -196,8 +207,9 @@ def table_by(
     fixed = max(len(lead), max((names.index(one) + 1 for one in _NEVER_MIXED if one in by
                                 and len(set(words[one])) > 1), default=0))  # fmt: skip
     return MeasurementTable(
-        names, tuple(metrics), tuple(_with_averages(numbers, found, keys, fixed, metrics))
-    )
+        names, tuple(metrics), tuple(_with_averages(numbers, found, keys, fixed, metrics)),
+        tuple(restored_notes(rows)),
+    )  # fmt: skip
 
 
 def _require(rows: Columns, by: Sequence[str], metrics: Sequence[str]) -> None:

@@ -8,7 +8,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from acutance.archive.counted import counted
+from acutance.archive.elsewhere import ELSEWHERE
 from acutance.archive.packing import plain_json
+from acutance.archive.restored_images import is_restored
 from acutance.batch.reason_words import UNREADABLE, in_words
 from acutance.batch.selected_bands import Band, without_band
 from acutance.curves.short_repr import ShortRepr
@@ -24,8 +26,6 @@ __all__ = ["BatchSummary", "Tally"]
 NO_FILE = "no such file"
 """Why an image that is not there has no measurement."""
 VERDICTS = ("good", "usable", "doubtful", "invalid")
-_ELSEWHERE = ("outside", "not there then")
-"""Rejections of targets that the image does not show: nothing went wrong."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +52,9 @@ class BatchSummary(ShortRepr):
     earlier_contents : mapping of str to sequence of str
         By path the contents (SHA-256) that a changed file had before and of which the archive
         still has rows: they count beside the new ones until they are removed.
+    restored : tuple of str
+        Images read now that were restored or sharpened before, by their tags or documents: their
+        numbers are those of the restored product.
     missing_bands : tuple of (str or int)
         Bands that were asked for and that no image has.
     bands : tuple of str
@@ -79,6 +82,7 @@ class BatchSummary(ShortRepr):
     copies: Mapping[str, str] = field(default_factory=dict)
     kept_otherwise: Mapping[str, Differing] = field(default_factory=dict)
     earlier_contents: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    restored: tuple[str, ...] = ()
     missing_bands: tuple[str | int, ...] = ()
     bands: tuple[str, ...] = ()
     done_before: int = 0
@@ -102,7 +106,7 @@ class BatchSummary(ShortRepr):
     @property
     def failed(self) -> int:
         """Rows that ``--strict`` objects to: rejected in their image, doubtful or invalid."""
-        elsewhere = sum(self.reasons.get(one, 0) for one in _ELSEWHERE)
+        elsewhere = sum(self.reasons.get(one, 0) for one in ELSEWHERE)
         weak = self.verdicts.get("doubtful", 0) + self.verdicts.get("invalid", 0)
         return self.rejected - elsewhere + weak
 
@@ -129,6 +133,7 @@ class BatchSummary(ShortRepr):
             "copies": dict(self.copies),
             "kept_otherwise": plain_json(self.kept_otherwise),
             "earlier_contents": {path: list(one) for path, one in self.earlier_contents.items()},
+            "restored": list(self.restored),
             "missing_bands": list(self.missing_bands),
             "done_before": self.done_before,
             "kept": self.kept,
@@ -152,6 +157,7 @@ class Tally:
         self.faults: dict[str, str] = {}
         self.missing: list[str] = []
         self.copies: dict[str, str] = {}
+        self.restored: list[str] = []
         self.bands: set[Band] = set()
         self.stated: dict[str, ImageEntry] = {}
         """By keys of rows what is stated of their images."""
@@ -178,6 +184,8 @@ class Tally:
                                       if one.rejected is not None), "")  # fmt: skip
         else:
             self.bands.update(found.bands)
+        if found.image is not None and is_restored(found.image.sources):
+            self.restored.append(path)
         for entry in found.entries:
             if entry.record is not None:
                 self._count(entry.record.verdict.word, None)
@@ -237,6 +245,7 @@ class Tally:
             missing=tuple(self.missing),
             faults=self.faults,
             copies=self.copies,
+            restored=tuple(self.restored),
             kept_otherwise=kept_otherwise or {},
             earlier_contents=earlier_contents or {},
             missing_bands=without_band(bands, there) if there else (),

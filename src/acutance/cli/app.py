@@ -41,6 +41,7 @@ from acutance.cli.terminal import (
     EXIT_CODES,
     NOTHING_MEASURED,
     fail,
+    log_said,
     replace_what_streams_lack,
     say,
     stop,
@@ -68,7 +69,7 @@ class _Commands(TyperGroup):
 
     def invoke(self, ctx: Any) -> Any:
         try:
-            with _stdout_needed(), outputs_of_a_run():
+            with _stdout_needed(), outputs_of_a_run(), log_said():
                 return super().invoke(ctx)
         except (TargetError, NoDataError, NothingSelectedError) as error:
             fail(str(error), NOTHING_MEASURED)

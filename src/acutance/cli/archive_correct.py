@@ -41,6 +41,10 @@ def correct(
     ] = None,
     sensor: Annotated[str | None, typer.Option(metavar="NAME", help="Which sensor it is.")] = None,
     level: Annotated[str | None, typer.Option(metavar="LEVEL", help="The product's level.")] = None,
+    band: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="The band of rows that were added without its name."),
+    ] = None,
     acquired: Annotated[
         str | None, typer.Option(metavar="DATE", help="When the image was taken; UTC.")
     ] = None,
@@ -68,7 +72,7 @@ def correct(
     ] = False,
     as_json: JsonOption = False,
 ) -> None:  # fmt: skip
-    """Correct date, sensor, level, GSD or angles of images that are kept already.
+    """Correct date, sensor, level, band, GSD or angles of images that are kept already.
 
     All corrections are made, or none. What was known before is kept with the image; measurements
     stay as they are, and a batch does not make them again.
@@ -79,7 +83,7 @@ def correct(
     from acutance.report import json_text
 
     values = {
-        "sensor": sensor, "level": level, "acquired": acquired, "gsd_m": _gsd(gsd_m),
+        "sensor": sensor, "level": level, "band": band, "acquired": acquired, "gsd_m": _gsd(gsd_m),
         "view_zenith_deg": view_zenith_deg, "view_azimuth_deg": view_azimuth_deg,
         "sun_elevation_deg": sun_elevation_deg, "sun_azimuth_deg": sun_azimuth_deg,
         "reason": reason,

@@ -7,6 +7,7 @@ import shlex
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -209,6 +210,7 @@ def _logged(name: str | None) -> Iterator[Callable[[Sequence[Entry]], None] | No
 def _line(entry: Entry) -> dict[str, Any]:
     record, rejected = entry.record, entry.rejected
     return {
+        "time": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ}",
         "key": entry.key,
         "image": entry.image.path,
         "target": None if entry.target is None else entry.target.name,
@@ -231,6 +233,8 @@ def _text(found: BatchSummary) -> str:
         *_named(f"unreadable: {_fault(*one)}" for one in found.faults.items()),
         *_named(f"measured once: {path} and {other} have the same content"
                 for path, other in found.copies.items()),
+        *_named(f"restored: {path}, by its own word: numbers are those of the restored product"
+                for path in found.restored),
     ]  # fmt: skip
     if found.rejected:
         lines.append(

@@ -11,6 +11,7 @@ import typer
 
 from acutance.cli.choices import choose_methods
 from acutance.cli.measure import measure_target
+from acutance.cli.named_bands import number_or_name
 from acutance.cli.option_groups import with_groups
 from acutance.cli.options import PixelOptions, ResultOptions, method_option
 from acutance.cli.sensor import named_sensor
@@ -57,8 +58,9 @@ def biresolution(
         ),
     ] = None,
     high_band: Annotated[
-        int, typer.Option(metavar="N", help="Which band of the high image, from 1.")
-    ] = 1,
+        str,
+        typer.Option(metavar="BAND", help="Which band of the high image: its number, or its name."),
+    ] = "1",
     high_nodata: Annotated[
         float | None,
         typer.Option(metavar="VALUE", help="The same of the high image."),
@@ -93,7 +95,7 @@ def biresolution(
         from acutance.raster import open_image
 
         return {
-            "high": open_image(high, high_band, nodata=high_nodata),
+            "high": open_image(high, number_or_name(high_band), nodata=high_nodata),
             "ratio": ratio,
             "reference_mtf": parse_reference(reference),
         }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Annotated
 
 import typer
@@ -25,6 +26,22 @@ EXAMPLE = (
 )
 
 
+@dataclass(frozen=True)
+class _OneResult(ResultOptions):
+    """What is asked of the one result that there is."""
+
+    figure: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Draw the result: .png, .svg or .pdf.")
+    ] = None
+    report: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Write a self-contained page: .html.")
+    ] = None
+    csv: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="Write the MTF in steps of 0.02 c/px: .csv."),
+    ] = None
+
+
 @with_groups
 def combine(
     *,
@@ -39,7 +56,7 @@ def combine(
         str,
         typer.Option(metavar="PX|ACROSS,ALONG", help="Width of the detector in pixels."),
     ] = "1",
-    wanted: ResultOptions,
+    wanted: _OneResult,
 ) -> None:
     """Combine measurements of one sensor into one 2-D OTF: across and along exactly.
 

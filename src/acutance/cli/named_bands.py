@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from acutance.cli.choices import parse_band
 from acutance.errors import OptionError
 
-__all__ = ["numbers_of_bands", "parse_bands"]
+__all__ = ["number_or_name", "numbers_of_bands", "parse_bands"]
 
 
 def parse_bands(text: str) -> list[int | str]:
@@ -18,15 +18,15 @@ def parse_bands(text: str) -> list[int | str]:
     OptionError
         If one is nothing.
     """
-    return [_number_or_name(one.strip()) for one in text.split(",")]
+    parts = [one.strip() for one in text.split(",")]
+    return [number_or_name(one) if one else parse_band(one) for one in parts]
 
 
-def _number_or_name(text: str) -> int | str:
+def number_or_name(text: str) -> int | str:
+    """The number of a band, or what may be the name of one."""
     try:
         return parse_band(text)
     except OptionError:
-        if not text:
-            raise
         return text
 
 
@@ -35,23 +35,12 @@ def numbers_of_bands(path: str, bands: Sequence[int | str]) -> list[int]:
 
     Raises
     ------
-    OptionError
+    ImageError
         If the file has no band of a name.
     """
     if all(isinstance(one, int) for one in bands):
         return [int(one) for one in bands]
-    from acutance.raster.metadata.read_statement import band_names
+    from acutance.raster.metadata.read_statement import band_numbers
     from acutance.raster.open_image import open_unnamed
 
-    first = open_unnamed(path)
-    names = band_names(first) or ()
-    by_name = {name.casefold(): number for number, name in enumerate(names, start=1)}
-    found = [one if isinstance(one, int) else by_name.get(one.casefold()) for one in bands]
-    for asked, number in zip(bands, found, strict=True):
-        if number is None:
-            bands_there = ", ".join(names) or f"{first.band_count}, without names"
-            raise OptionError(
-                f"--band {asked} is not the number of a band, from 1 to {first.band_count}, nor "
-                f"the name of one: the bands of {path} are {bands_there}"
-            )
-    return [number for number in found if number is not None]
+    return band_numbers(open_unnamed(path), bands)

@@ -20,6 +20,7 @@ __all__ = [
     "NOTHING_MEASURED",
     "command_line",
     "fail",
+    "log_said",
     "replace_what_streams_lack",
     "say",
     "stop",
@@ -84,6 +85,26 @@ def _discard_stdout() -> None:
         stdout, nowhere = sys.stdout.fileno(), os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, stdout)
         os.close(nowhere)
+
+
+@contextmanager
+def log_said() -> Iterator[None]:
+    """Say what the package logs in a line on stderr: that its loops are compiled first."""
+    import logging
+
+    class Said(logging.Handler):
+        def emit(self, record: logging.LogRecord) -> None:
+            say(f"acutance: {record.getMessage()}")
+
+    logger, handler = logging.getLogger("acutance"), Said()
+    before = logger.level
+    logger.addHandler(handler)
+    logger.setLevel(logging.INFO)
+    try:
+        yield
+    finally:
+        logger.removeHandler(handler)
+        logger.setLevel(before)
 
 
 @contextmanager

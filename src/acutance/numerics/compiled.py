@@ -3,15 +3,19 @@
 A chain of array operations reads and writes every intermediate array; a loop that does the same
 work for one pixel after another keeps them in registers. Such loops are compiled by numba when
 they are first called, and kept in a folder of the user's, so that other processes load them:
-the first calls of a fresh installation take some thirty seconds longer.
+the first calls of a fresh installation take some thirty seconds longer, which the logger "acutance"
+notes.
 """
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
+from numba.core import event
 
 __all__ = ["compiled", "inlined"]
 
@@ -23,6 +27,32 @@ _OPTIONS: dict[str, Any] = {
     "error_model": "numpy",
     "fastmath": {"reassoc", "contract"},
 }
+
+
+class _FirstCompilation(event.Listener):
+    """Notes once that loops are compiled which no earlier process has left in the folder."""
+
+    def __init__(self) -> None:
+        self._is_noted = False
+
+    def on_start(self, found: Any) -> None:
+        loop = found.data["dispatcher"]
+        folder, module = loop.stats.cache_path, loop.py_func.__module__
+        # Inlined functions have no folder; other packages of the process have loops of their own.
+        if self._is_noted or folder is None or not module.startswith("acutance."):
+            return
+        # New types of a known loop take a second or two: nothing to be told of.
+        if not any(Path(folder).glob("*.nbi")):
+            self._is_noted = True
+            logging.getLogger("acutance").info(
+                "compiling loops once, some 30 s; later starts load them"
+            )
+
+    def on_end(self, found: Any) -> None:
+        pass
+
+
+cast(Any, event).register("numba:compile", _FirstCompilation())
 
 
 def compiled(function: _F) -> _F:

@@ -30,6 +30,7 @@ from acutance.raster.image import Image
 from acutance.raster.packed_file import packed_names
 from acutance.raster.pixels import equals_nodata, usable_values
 from acutance.raster.region import Box
+from acutance.raster.restored_tag import restoration_of
 
 __all__ = [
     "CACHE_BYTES",
@@ -137,6 +138,7 @@ def open_dataset(path: str, band: int, gsd: Gsd | None, nodata: float | None) ->
             geolocation=_geolocation(dataset),
             own_gsd=declared if gsd is None else gsd,
             declared_gsd=declared,
+            restored=restoration_of(dataset.tags(), band),
         )
 
 

@@ -83,6 +83,8 @@ class Image(ShortRepr):
         As the file or a document beside it states it.
     stated_nodata : float or None
         The nodata value that was stated when the file was opened.
+    restored : str or None
+        The filter that restored the band, by the tag that `acutance.restore` wrote.
     """
 
     path: str | None
@@ -100,6 +102,7 @@ class Image(ShortRepr):
     every_value_is_data: bool = False
     band_name: str | None = None
     stated_nodata: float | None = None
+    restored: str | None = None
 
     def __post_init__(self) -> None:
         if self.along_track not in ("x", "y"):

@@ -35,7 +35,7 @@ _GDAL_NAME = re.compile(r"^(/vsi\w+/|\w+://|[A-Za-z0-9_]{2,}:)")
 
 def open_image(
     path: str | os.PathLike[str],
-    band: int = 1,
+    band: int | str = 1,
     gsd_m: float | Gsd | None = None,
     nodata: float | None = None,
     along_track: AlongTrack = "y",
@@ -49,8 +49,8 @@ def open_image(
         Any raster that GDAL reads in rasterio's wheel (GeoTIFF, COG, JPEG 2000, NITF, HDF5,
         DIMAP, SAFE, TIFF, PNG, JPEG), a name of GDAL's own ("HDF5:file.h5://band",
         "/vsizip/a.zip/b.tif"), or a 2-D array in a ``.npy`` file.
-    band : int
-        Which band, from 1.
+    band : int or str
+        Which band: its number, from 1, or its name as `read_statement` finds it.
     gsd_m : float or Gsd, optional
         Ground sampling distance in metres; it replaces the one of the geotransform.
     nodata : float, optional
@@ -75,7 +75,8 @@ def open_image(
     OptionError
         If the GSD is not a positive number, the nodata value no number, or there is no such curve.
     """
-    (found,) = _named([open_unnamed(path, band, gsd_m, nodata, along_track, linearize)])
+    (number,) = _numbers(path, [band])
+    (found,) = _named([open_unnamed(path, number, gsd_m, nodata, along_track, linearize)])
     return found
 
 
@@ -116,7 +117,7 @@ def open_unnamed(
 
 def open_bands(
     path: str | os.PathLike[str],
-    bands: Sequence[int] | None = None,
+    bands: Sequence[int | str] | None = None,
     gsd_m: float | Gsd | None = None,
     nodata: float | None = None,
     along_track: AlongTrack = "y",
@@ -127,8 +128,8 @@ def open_bands(
     Parameters
     ----------
     path : str or path
-    bands : sequence of int, optional
-        Which, from 1, each once; without it all but a band of transparency.
+    bands : sequence of (int or str), optional
+        Numbers, from 1, or names, each band once; without it all but a band of transparency.
     gsd_m, nodata, along_track, linearize : optional
         As of `open_image`, the same for all bands.
 
@@ -139,13 +140,23 @@ def open_bands(
     OptionError
         If no band is asked for, or one twice.
     """
-    numbers = _all_bands(open_unnamed(path)) if bands is None else list(bands)
+    numbers = _all_bands(open_unnamed(path)) if bands is None else _numbers(path, bands)
     if not numbers:
         raise OptionError("no band is asked for: give numbers, from 1, or leave bands out for all")
     if len(set(numbers)) < len(numbers):
         raise OptionError(f"bands are {numbers}: give the number of every band once")
     found = [open_unnamed(path, one, gsd_m, nodata, along_track, linearize) for one in numbers]
     return tuple(_named(found))
+
+
+def _numbers(path: str | os.PathLike[str], bands: Sequence[int | str]) -> list[int]:
+    """Numbers of bands; documents are read for names alone."""
+    # What is no number at all is refused where the band is opened.
+    if not any(isinstance(one, str) for one in bands):
+        return list(bands)  # type: ignore[arg-type]
+    from acutance.raster.metadata.read_statement import band_numbers
+
+    return band_numbers(open_unnamed(path), bands)
 
 
 def _named(images: Sequence[Image]) -> list[Image]:
@@ -180,7 +191,7 @@ def _as_number(band: Any, name: str) -> int:
         return operator.index(band)
     except TypeError:
         raise ImageError(
-            f"band {band!r:.80} of {name} was requested: give the number of a band, from 1"
+            f"band {band!r:.80} of {name} was requested: give its number, from 1, or its name"
         ) from None
 
 

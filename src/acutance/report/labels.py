@@ -262,6 +262,8 @@ def provenance(result: Measurement | Record, max_name: int | None = None) -> dic
             found["GSD"] += f" (stated; the image's own is {own})"
     if image.linearized is not None:
         found["linearised"] = image.linearized
+    if image.restored is not None:
+        found["restored"] = "by acutance: the numbers are those of the restored product"
     if softness := word_softness(result.options):
         found["stated softness"] = softness
     if level := result.options.get("level_uncertainty"):

@@ -11,6 +11,7 @@ import numpy as np
 
 from acutance.errors import OptionError
 from acutance.raster import Image
+from acutance.raster.restored_tag import BEFORE_TAG, RESTORED_TAG
 from acutance.restoration.restoration_filter import RestorationFilter
 
 __all__ = [
@@ -21,8 +22,6 @@ __all__ = [
     "restored_tags",
 ]
 
-RESTORED_TAG = "ACUTANCE_RESTORATION"
-BEFORE_TAG = "ACUTANCE_RESTORATION_BEFORE"
 _GSD_SHARE = 0.02
 
 

@@ -79,6 +79,9 @@ class ImageInfo:
         Bands of the file; ``None`` where it is not known.
     region : str or None
         What the region is called, where it has a name.
+    restored : str or None
+        The filter that `acutance.restore` applied to the band before it was measured: the numbers
+        are those of the restored product.
     is_polygon : bool
         Whether the region leaves out pixels of `roi`.
     stated_nodata : float or None
@@ -96,6 +99,7 @@ class ImageInfo:
     band_name: str | None = None
     band_count: int | None = None
     region: str | None = None
+    restored: str | None = None
 
     # Two facts for the command that repeats a measurement, which documents do not have.
     is_polygon: bool = field(default=False, compare=False)
@@ -141,6 +145,7 @@ class ImageInfo:
             "band_name": self.band_name,
             "band_count": self.band_count,
             "region": self.region,
+            "restored": self.restored,
         }
 
     @classmethod
@@ -163,6 +168,7 @@ class ImageInfo:
             document.get("band_name"),
             document.get("band_count"),
             document.get("region"),
+            document.get("restored"),
         )
 
 

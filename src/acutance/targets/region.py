@@ -99,7 +99,7 @@ def image_info(image: Image, box: Box, gsd: Gsd | None, region: str = "") -> Ima
         image.band_name,
         None if image.path is None else image.band_count,
         region or None,
-        stated_nodata=image.stated_nodata,
+        restored=image.restored, stated_nodata=image.stated_nodata,
     )  # fmt: skip
 
 

@@ -168,7 +168,9 @@ def test_what_has_no_trend_is_refused(series_of: Make) -> None:
     made = series_of(images=6)
     with pytest.raises(ac.OptionError, match="none of 6 measurements has a date"):
         fit_trend(replace(made, when=np.full(6, np.nan)))
-    with pytest.raises(ac.OptionError, match="all 6 images are of 2022-01-01"):
+    with pytest.raises(
+        ac.OptionError, match=r"all 6 images are of 2022-01-01.*acutance archive table"
+    ):
         fit_trend(replace(made, when=np.full(6, 2022.0)))
     with pytest.raises(ac.OptionError, match="2 images have dates, a trend needs 3"):
         fit_trend(made.of(np.arange(6) < 2))

@@ -19,7 +19,12 @@ from acutance.archive.trends.images import mean_of_images
 from acutance.errors import NothingSelectedError, OptionError
 from acutance.report.archive import sensor_page, trend_figure, trend_page
 from acutance.report.archive.sensor_state import SeriesState, states_of
-from acutance.report.archive.sensor_tables import images_table, specification_table, state_table
+from acutance.report.archive.sensor_tables import (
+    images_table,
+    rejected_table,
+    specification_table,
+    state_table,
+)
 from acutance.report.archive.trend_page import trend_verdict
 from acutance.report.archive.wording import percent, signed, with_minus
 from acutance.report.labels import MISSING, word_estimate
@@ -302,7 +307,10 @@ def test_a_sensor_without_a_name_has_a_title_and_the_note_of_the_check(tmp_path,
     for answer, images in zip(answers, (4, 2), strict=True):
         note = f"No sensor and no band is named: {images} images are taken to be of one."
         assert note in answer.reason
+        assert answer.summary.startswith("images without a sensor, GSD ")
         assert f"<b>note</b>: {note}" in page
+    # The page is of them, and does not say it again of every number.
+    assert "images without a sensor, " not in page
 
 
 def test_bands_are_in_the_order_of_their_numbers(tmp_path, edge_record):
@@ -336,6 +344,29 @@ def test_an_image_dated_to_the_day_has_no_time(tmp_path, edge_record):
         rows = days.measurements()
         shown = [row[0] for row in images_table(rows, days.rejected()).rows]
     assert shown == ["2026-01-05", "2026-01-06 10:20", MISSING]
+
+
+def test_targets_that_an_image_does_not_show_are_named_and_not_called_rejected(
+    tmp_path, edge_record
+):
+    image = ImageEntry(path="brazil.tif", sensor="S")
+    rejected = [
+        Entry(
+            rejected=Rejected("region", f"outside: row {-348936 - at}", {"why": "outside"}),
+            image=image, target=TargetEntry(name=f"quay {at % 2}", kind="edge"), key=str(at),
+        )
+        for at in range(4)
+    ]  # fmt: skip
+    with Archive(tmp_path / "far.db") as far:
+        far.add(edge_record, image=image)
+        far.add_entries(rejected)
+        page = words_of(sensor_page(far, "S"))
+        (row,) = rejected_table(far.rejected()).rows
+        (listed,) = images_table(far.measurements(), far.rejected()).rows
+    assert row == ("4", "region", "outside the image: quay 0, quay 1")
+    assert listed[-1] == "0"
+    assert "348936" not in page
+    assert "not in their images" in page
 
 
 def test_a_sensor_that_is_not_there_is_named(archive):

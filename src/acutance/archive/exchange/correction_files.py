@@ -16,7 +16,7 @@ from acutance.errors import OptionError
 
 __all__ = ["read_correction_file"]
 
-_TEXTS: Final = ("image", "sensor", "level", "acquired", "reason")
+_TEXTS: Final = ("image", "sensor", "level", "band", "acquired", "reason")
 _SIDES: Final = ("gsd_row_m", "gsd_col_m")
 _COLUMNS: Final = ("image", *CORRECTED, *_SIDES, "reason")
 

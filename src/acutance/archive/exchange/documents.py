@@ -9,6 +9,7 @@ from typing import Any
 
 from acutance.archive.entry import Entry, ImageEntry, TargetEntry
 from acutance.archive.exchange import entry_document
+from acutance.archive.restored_images import restored_sources
 from acutance.errors import OptionError
 from acutance.targets.record import SCHEMA, Record
 from acutance.targets.target_result import Rejected
@@ -96,6 +97,7 @@ def _measured(document: Mapping[str, Any], stated: Stated) -> Entry:
         level=stated.level,
         acquired=stated.acquired,
         gsd_m=record.image.pixel_gsd_m,
+        sources=restored_sources(record),
     )
     named = document.get("region") or record.image.region
     target = stated.target if stated.target is not None else named

@@ -17,6 +17,7 @@ from typing import Any
 
 from acutance.archive.columns import require_library
 from acutance.archive.dates import as_utc
+from acutance.archive.elsewhere import elsewhere
 from acutance.archive.entry import Entry, ImageEntry
 from acutance.archive.exchange.entry_document import entry_document
 from acutance.archive.exchange.files import refusals_in_words
@@ -92,11 +93,8 @@ def _write_lines(entries: Iterable[Entry], folder: Path) -> tuple[dict[str, _Ite
             items[name] = _Item(entry.image, as_utc(entry.image.acquired, "acquired"))
             (folder / name).mkdir(parents=True)
         item = items[name]
-        for part, numbers in item_numbers(entry):
-            item.numbers[part].append(numbers)
-        target = entry.target
-        if target is not None and target.lon is not None and target.lat is not None:
-            item.places[target.lon, target.lat] = None
+        if entry.rejected is None or elsewhere(entry.rejected.values) is None:
+            _add_target(item, entry)
         with (folder / name / _LINES).open("ab") as lines:
             lines.write(json_bytes(entry_document(entry)) + b"\n")
         count += 1
@@ -106,6 +104,15 @@ def _write_lines(entries: Iterable[Entry], folder: Path) -> tuple[dict[str, _Ite
             "correct the images, or export to jsonl or parquet"
         )
     return items, count
+
+
+def _add_target(item: _Item, entry: Entry) -> None:
+    """The numbers and the place of a target that the image shows."""
+    for part, numbers in item_numbers(entry):
+        item.numbers[part].append(numbers)
+    target = entry.target
+    if target is not None and target.lon is not None and target.lat is not None:
+        item.places[target.lon, target.lat] = None
 
 
 def _write_items(items: dict[str, _Item], folder: Path) -> None:

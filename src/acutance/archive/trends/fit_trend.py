@@ -21,6 +21,7 @@ __all__ = ["fit_trend"]
 
 _YEAR_DAYS = 365.25
 _MIN_DAYS = 1.0
+_MEAN_INSTEAD = "take their mean (acutance archive table, archive.table)"
 
 
 def fit_trend(series: Series, events: Sequence[Event] = ()) -> Trend:
@@ -64,12 +65,12 @@ def _require_time(images: ImageMeans, series: Series) -> None:
         are = "has a date" if images.size == 1 else "have dates"
         raise OptionError(
             f"{series.title}: {counted(images.size, 'image')} {are}, a trend needs {MIN_IMAGES}: "
-            "select more (verdict, since, until), or take their mean"
+            f"select more (verdict, since, until), or {_MEAN_INSTEAD}"
         )
     if days < _MIN_DAYS:
         raise OptionError(
             f"{series.title}: all {images.size} images are of {date_of(float(images.when[0]))}, "
-            "and a trend needs time between them: take their mean"
+            f"and a trend needs time between them: {_MEAN_INSTEAD}"
         )
 
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from acutance.archive.columns import Columns
 from acutance.archive.natural_order import natural_key
+from acutance.archive.restored_images import restored_notes
 from acutance.archive.trends.gsd import SAME_GSD, gsd_classes
 from acutance.archive.trends.series import Series
 from acutance.curves import MAIN_NUMBERS, METRICS
@@ -20,6 +21,7 @@ from acutance.curves.grid import Floats
 from acutance.errors import NothingSelectedError, OptionError
 
 __all__ = [
+    "NO_SENSOR",
     "all_series",
     "by_gsd",
     "gsd_words",
@@ -29,6 +31,9 @@ __all__ = [
     "unmeasured_directions",
     "years_of",
 ]
+
+NO_SENSOR = "images without a sensor"
+"""What series of them are called by."""
 
 _PRODUCT = ("sensor", "band", "level")
 _ONE_OF = (*_PRODUCT, "orientation")
@@ -169,7 +174,7 @@ def _require_metric(metric: str) -> None:
 def _title(rows: Columns, mask: NDArray[np.bool_], size: str | None, orientation: str) -> str:
     """What the rows of a mask are of: "QB02, pan, across"."""
     sensor, band, level = (rows[name][mask][0] for name in _PRODUCT)
-    parts = (sensor, _band_words(band), level, size, orientation)
+    parts = (sensor or NO_SENSOR, _band_words(band), level, size, orientation)
     return ", ".join(str(part) for part in parts if part is not None)
 
 
@@ -195,7 +200,7 @@ def _series(rows: Columns, metric: str, mask: NDArray[np.bool_], size: str | Non
         systematic_std=systematic, image=image, gsd_m=pixel_side_m(rows)[mask],
         image_names={number: name for number, name in names.items() if name is not None},
         name=_title(rows, mask, size, rows["orientation"][mask][0]),
-        notes=(*_unnamed(rows, mask), *_mixed(rows, mask)),
+        notes=(*_unnamed(rows, mask), *_mixed(rows, mask), *restored_notes(rows, mask)),
     )  # fmt: skip
 
 

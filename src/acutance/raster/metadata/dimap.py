@@ -7,6 +7,7 @@ from xml.etree.ElementTree import Element
 from acutance.raster.metadata.findings import Findings, find, lon_lat, number, word
 from acutance.raster.metadata.times import time_or_day
 from acutance.raster.metadata.xml_document import text_at
+from acutance.raster.restored_tag import OF_RESTORED
 
 __all__ = ["image_names", "read_dimap"]
 
@@ -84,7 +85,7 @@ def _notes(root: Element, centre: Element | None, source: str) -> tuple[str, ...
         )
     for name in ("PAN_RESTORATION", "MS_RESTORATION"):
         if (text_at(root, f".//MTF_Settings/{name}") or "").lower() == "true":
-            notes.append(f"{source}: {name} is true: the MTF is that of the restored product")
+            notes.append(f"{source}: {name} is true: {OF_RESTORED}")
     return tuple(notes)
 
 

@@ -9,6 +9,7 @@ from typing import Any
 from acutance.raster.metadata.findings import Findings, find, number, word
 from acutance.raster.metadata.gml import read_gml
 from acutance.raster.metadata.times import has_zone, is_day, time_or_day
+from acutance.raster.restored_tag import OF_RESTORED, RESTORED_TAG
 
 __all__ = ["FileTags", "file_tags", "read_tags"]
 
@@ -118,6 +119,8 @@ def _notes(tags: Mapping[str, str], source: str, said: Mapping[str, tuple[Any, s
         for name in _FILE_TIMES
         if tags.get(name)
     )
+    if tags.get(RESTORED_TAG):
+        notes.append(f"{source}: tag {RESTORED_TAG}, {tags[RESTORED_TAG]}: {OF_RESTORED}")
     return notes
 
 

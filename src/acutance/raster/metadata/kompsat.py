@@ -7,6 +7,7 @@ from xml.etree.ElementTree import Element
 from acutance.raster.metadata.findings import Findings, find, lon_lat, number, word
 from acutance.raster.metadata.times import utc_time
 from acutance.raster.metadata.xml_document import text_at
+from acutance.raster.restored_tag import OF_RESTORED
 
 __all__ = ["read_kompsat"]
 
@@ -73,5 +74,5 @@ def _notes(root: Element, source: str) -> tuple[str, ...]:
             "sun's angles stay empty"
         )
     if (text_at(root, "General/ApplyMTFC") or "").lower() == "true":
-        notes.append(f"{source}: ApplyMTFC is true: the MTF is that of the restored product")
+        notes.append(f"{source}: ApplyMTFC is true: {OF_RESTORED}")
     return tuple(notes)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from acutance.errors import RegionError
+from acutance.errors import ImageError, RegionError
 from acutance.raster.image import Image
 from acutance.raster.metadata.documents import read_document
 from acutance.raster.metadata.files_beside import files_beside
@@ -16,7 +16,7 @@ from acutance.raster.metadata.gdal_tags import file_tags, read_tags
 from acutance.raster.metadata.statement import ImageStatement, state
 from acutance.raster.open_image import open_unnamed
 
-__all__ = ["band_names", "read_statement"]
+__all__ = ["band_names", "band_numbers", "read_statement"]
 
 
 def read_statement(
@@ -72,6 +72,35 @@ def band_names(image: Image) -> tuple[str, ...] | None:
     tags = read_tags(file_tags(path), Path(path).name)
     found = _for_bands(state(path, [*of_files, tags]), image.band_count).bands
     return None if found is None else found.value
+
+
+def band_numbers(image: Image, bands: Sequence[int | str]) -> list[int]:
+    """Numbers of bands that are given by number, or by name in letters of either case.
+
+    Parameters
+    ----------
+    image : Image
+        One of the bands of a file.
+    bands : sequence of int or str
+
+    Raises
+    ------
+    ImageError
+        If the file has no band of a name.
+    """
+    names = band_names(image) or ()
+    by_name = {name.casefold(): number for number, name in enumerate(names, start=1)}
+    numbers = []
+    for asked in bands:
+        number = by_name.get(asked.casefold()) if isinstance(asked, str) else asked
+        if number is None:
+            there = ", ".join(names) or f"{image.band_count}, without names"
+            raise ImageError(
+                f"band {asked!r:.80} is not the number of a band, from 1 to {image.band_count}, "
+                f"nor the name of one: the bands of {image.path} are {there}"
+            )
+        numbers.append(number)
+    return numbers
 
 
 def _of_geolocation(image: Image, name: str) -> Findings:

@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from acutance.archive import Archive
+from acutance.archive.elsewhere import elsewhere
 from acutance.archive.requirement_selection import asked_of, asks_nothing
 from acutance.archive.specification import read_specification
+from acutance.archive.trends.measured_series import NO_SENSOR
 from acutance.curves import MAIN_NUMBERS
 from acutance.curves.metric_words import METRIC_WORDS
 from acutance.errors import NothingSelectedError, OptionError
@@ -124,7 +126,11 @@ def sensor_page(
 
 def _facts(every: Measurements, rejected: Rejections, used: Measurements) -> dict[str, str]:
     measured, taken = (len(set(part["id"].tolist())) for part in (every, used))
-    return {"measured": str(measured), "used": str(taken), "rejected": str(len(rejected))}
+    absent = sum(elsewhere(one) is not None for one in rejected["values"].tolist())
+    counts = {"measured": measured, "used": taken, "rejected": len(rejected) - absent}
+    # Of many targets in many images most pairs are none: that is no failure of the sensor's images.
+    counts |= {"not in their images": absent} if absent else {}
+    return {name: str(count) for name, count in counts.items()}
 
 
 def _answer_sections(
@@ -185,7 +191,7 @@ def _trend_sections(
 
 def _limit_of(state: SeriesState, check: SpecificationCheck | None, sensor: str) -> float | None:
     """The limit that a requirement sets for a series."""
-    own = ", ".join(filter(None, (sensor, state.name)))
+    own = ", ".join(filter(None, (sensor or NO_SENSOR, state.name)))
     for answer in check.answers if check else ():
         if answer.requirement.metric == state.metric and answer.what == own:
             return answer.requirement.limit

@@ -11,7 +11,7 @@ import numpy as np
 from acutance.archive.columns import Columns
 from acutance.archive.trends import Event, Trend, fit_trend
 from acutance.archive.trends.images import mean_of_images
-from acutance.archive.trends.measured_series import all_series
+from acutance.archive.trends.measured_series import NO_SENSOR, all_series
 from acutance.archive.trends.series import date_of
 from acutance.archive.weighted_means import WeightedMean
 from acutance.curves import MAIN_NUMBERS, Estimate
@@ -91,7 +91,7 @@ def states_of(
                 found[one] = fit_trend(series, events)
             except OptionError:
                 found[one] = mean_of_images(series)
-        name = main.name.removeprefix(sensor).removeprefix(", ")
+        name = main.name.removeprefix(sensor or NO_SENSOR).removeprefix(", ")
         when = known.when[np.isfinite(known.when)]
         days = (date_of(float(when.min())), date_of(float(when.max()))) if when.size else ()
         images = len(set(known.image.tolist()))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import date
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from acutance.archive.columns import Columns
 from acutance.archive.dates import day_or_minute
+from acutance.archive.elsewhere import elsewhere
 from acutance.archive.requirement_answers import Answer, SpecificationCheck
 from acutance.archive.tables_by import MeasurementTable, table_by
 from acutance.archive.trends import Trend
@@ -28,7 +29,7 @@ __all__ = ["images_table", "means_tables", "rejected_table", "specification_tabl
 if TYPE_CHECKING:
     from acutance.archive.measurements import Measurements
 
-_MAX_IMAGES, _MAX_REASONS = 400, 30
+_MAX_IMAGES, _MAX_REASONS, _MAX_NAMES = 400, 30, 20
 _VERDICTS = ("good", "usable", "doubtful", "invalid")
 
 
@@ -143,7 +144,7 @@ def images_table(rows: Columns, rejected: Columns) -> Table:
             )
             if is_measured:
                 one["ids"][int(part["id"][at])] = str(part["verdict"][at])
-            else:
+            elif elsewhere(part["values"][at]) is None:
                 one["rejected"] += 1
     listed = []
     for one in sorted(images.values(), key=_by_date)[:_MAX_IMAGES]:
@@ -169,13 +170,24 @@ def _by_date(image: dict[str, Any]) -> tuple[bool, Any, str]:
 
 
 def rejected_table(rejected: Columns) -> Table | None:
-    """Why targets were not measured, the most frequent reason first; none if all were."""
+    """Why targets were not measured, the most frequent reason first; none if all were.
+
+    Targets that their images do not show are named, whatever the pixel where they would lie.
+    """
     if not len(rejected):
         return None
-    counts = Counter(
-        zip(rejected["stage"].tolist(), rejected["reason"].tolist(), strict=True)
-    ).most_common()
-    rows = tuple((str(count), str(stage), str(reason)) for (stage, reason), count in counts)
+    columns = (rejected[name].tolist() for name in ("stage", "reason", "values", "target"))
+    counts: Counter[tuple[str, str]] = Counter()
+    names: dict[str, dict[str, None]] = {}
+    for stage, reason, values, target in zip(*columns, strict=True):
+        absent = elsewhere(values)
+        counts[str(stage), absent or str(reason)] += 1
+        if absent:
+            names.setdefault(absent, {})[target or "(without a name)"] = None
+    rows = tuple(
+        (str(count), stage, f"{reason}: {_listed(names[reason])}" if reason in names else reason)
+        for (stage, reason), count in counts.most_common()
+    )
     left = len(rows) - _MAX_REASONS
     notes = (
         (f"The {_MAX_REASONS} most frequent; {left} more are in the archive.",) if left > 0 else ()
@@ -184,3 +196,9 @@ def rejected_table(rejected: Columns) -> Table | None:
         ("Times", "Stage", "Reason"), rows[:_MAX_REASONS], "rll", title="Not measured", notes=notes,
         page_only=True,
     )  # fmt: skip
+
+
+def _listed(names: Mapping[str, None]) -> str:
+    """Names, the first of many."""
+    more = len(names) - _MAX_NAMES
+    return ", ".join([*list(names)[:_MAX_NAMES], *([f"{more} more"] if more > 0 else [])])
