@@ -293,6 +293,12 @@ def test_other_pixels_and_another_band_are_refused(sharpening, tmp_path):
     for wrong in ("pan", 1.5, [1, "2"]):
         with pytest.raises(ac.OptionError, match="give numbers from 1, or 'all'"):
             ac.restore(several, sharpening, out=out, bands=wrong)
+    with pytest.raises(ac.OptionError, match="no band was named"):
+        ac.restore(several, sharpening, out=tmp_path / "copy.tif", bands=[])
+    assert not (tmp_path / "copy.tif").exists()
+    done = ac.restore(several, sharpening, out=out, bands=[1, 1])
+    assert done.bands[1].pixels == 40 * 50
+    assert "; bands 1; " in rewriting.stored_tags(out)["ACUTANCE_RESTORATION"]
     with pytest.raises(ac.ImageError, match="band 7"):
         ac.restore(several, sharpening, out=out, bands=7, accept_mismatch=True)
 
