@@ -9,7 +9,13 @@ import pytest
 from acutance.errors import ModelError, OptionError
 from acutance.optics import Detector, presets
 from acutance.simulate import (
+    EdgeTarps,
     Noise,
+    Patch,
+    Point,
+    PulseTarp,
+    Star,
+    Strip,
     bars,
     brookings,
     checkerboard,
@@ -25,7 +31,9 @@ from acutance.simulate import (
     star,
     tarp_rows,
 )
+from acutance.simulate.star import add_star
 
+STAR = Star(60.0, 60.0, 40.0)
 SENSOR = reference_systems()["gaussian"]
 HUGE = (1_000_000, 1_000_000)
 NAN, INF = math.nan, math.inf
@@ -67,6 +75,41 @@ def test_a_star_beyond_memory_is_refused():
 def test_levels_are_numbers(render, level):
     with pytest.raises(ModelError, match=r"bright is .*, it has to be a finite number"):
         render(SENSOR, bright=level)
+
+
+@pytest.mark.parametrize("wrong", [NAN, INF])
+@pytest.mark.parametrize(
+    ("render", "named"),
+    [
+        (lambda x: points(SENSOR, positions=[(20, 20)], fluxes=[x]), "a flux is"),
+        (lambda x: star(SENSOR, ground=x), "ground is"),
+        (lambda x: star(SENSOR, centre=(x, 2.0)), "the row of centre is"),
+        (lambda x: Star(x, 60.0, 40.0), "Star: row is"),
+        (lambda x: add_star(np.zeros((9, 9)), SENSOR, STAR, mean=x, amplitude=1.0), "mean is"),
+        (lambda x: checkerboard(SENSOR, centre=(60.0, x)), "the column of centre is"),
+        (lambda x: render_site(SENSOR, [], (50, 50), ground=x), "ground is"),
+        (lambda x: EdgeTarps("a", x, 60.0, 6.0, 20.0, 100.0, 900.0), "EdgeTarps: row is"),
+        (lambda x: EdgeTarps("a", 60.0, 60.0, x, 20.0, 100.0, 900.0), "EdgeTarps: normal_deg is"),
+        (lambda x: EdgeTarps("a", 60.0, 60.0, 6.0, 20.0, x, 900.0), "EdgeTarps: dark is"),
+        (lambda x: PulseTarp("a", 60.0, 60.0, 6.0, 3.0, 50.0, x), "PulseTarp: level is"),
+        (lambda x: Patch(x, 1.0, 5.0, 5.0, 0.0, 10.0), "Patch: row is"),
+        (lambda x: Patch(1.0, 1.0, 5.0, 5.0, 0.0, x), "Patch: contrast is"),
+        (lambda x: Strip(1.0, 1.0, x, 5.0, 10.0), "Strip: normal_deg is"),
+        (lambda x: Point(1.0, 1.0, x), "Point: flux is"),
+        (
+            lambda x: next(
+                overflights(
+                    lambda when: SENSOR, [], (50, 50), [datetime(2026, 1, 1)],
+                    noise_std=x, air_px=0.1, rng=np.random.default_rng(1),
+                )
+            ),
+            "noise_std is",
+        ),
+    ],
+)  # fmt: skip
+def test_places_and_levels_of_scenes_are_finite(render, named, wrong):
+    with pytest.raises(ModelError, match=rf"^{named} .*finite( number.*)?$"):
+        render(wrong)
 
 
 @pytest.mark.parametrize(

@@ -69,11 +69,10 @@ def require(
             raise ModelError(f"{type(block).__name__}: {name} is {value!r}, it has to be a number")
         inside = (value > low if above else value >= low) and value <= high
         if not (inside and math.isfinite(value)):
-            relation = "above" if above else "at least"
+            lower = "" if math.isinf(low) else f", {'above' if above else 'at least'} {low:g}"
             upper = "" if math.isinf(high) else f" and at most {high:g}"
             raise ModelError(
-                f"{type(block).__name__}: {name} is {value:g}, it has to be finite, "
-                f"{relation} {low:g}{upper}"
+                f"{type(block).__name__}: {name} is {value:g}, it has to be finite{lower}{upper}"
             )
 
 

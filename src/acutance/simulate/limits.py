@@ -17,6 +17,7 @@ __all__ = [
     "MAX_SCENE_PIXELS",
     "require_finite",
     "require_numbers",
+    "require_place",
     "require_rng",
     "require_sensor",
     "require_shape",
@@ -79,6 +80,26 @@ def require_finite(**values: float) -> None:
     for name, value in values.items():
         if not math.isfinite(value):
             raise ModelError(f"{name} is {value:g}, it has to be a finite number")
+
+
+def require_place(**values: tuple[float, float]) -> None:
+    """Refuse what is no pair of finite numbers, (row, column).
+
+    Raises
+    ------
+    OptionError
+        If it is something else than two numbers: names the argument.
+    ModelError
+        If one of them is infinite, or NaN.
+    """
+    for name, place in values.items():
+        try:
+            row, col = place
+        except (TypeError, ValueError):
+            raise OptionError(
+                f"{name} is {place!r:.80}: it has to be two numbers, (row, column)"
+            ) from None
+        require_finite(**{f"the row of {name}": row, f"the column of {name}": col})
 
 
 def require_rng(rng: np.random.Generator | None, wanted: str) -> np.random.Generator:

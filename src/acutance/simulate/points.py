@@ -172,8 +172,8 @@ def points(
     Raises
     ------
     ModelError
-        If there are no sources, one lies outside the image, their numbers differ, or `peak` is not
-        above 0.
+        If there are no sources, one lies outside the image, their numbers differ, a flux is not
+        finite, or `peak` is not above 0.
     OptionError
         If an argument is of the wrong kind.
     """
@@ -202,6 +202,8 @@ def points(
             f"{light.size} fluxes were given for {places.shape[0]} positions: give one for each"
         )
     light = np.broadcast_to(light, places.shape[:1]).copy()
+    if not np.all(np.isfinite(light)):
+        raise ModelError("a flux is not a finite number: give the light of each source")
     sources = [
         Point(row, col, float(flux))
         for (row, col), flux in zip(places.tolist(), light, strict=True)

@@ -17,7 +17,7 @@ from acutance.geometry.angles import direction_difference
 from acutance.optics.block import require, require_count
 from acutance.optics.sensor import Sensor
 from acutance.simulate.ground import MAX_SUBPIXELS, render_raster
-from acutance.simulate.limits import require_finite, require_sensor, require_shape
+from acutance.simulate.limits import require_finite, require_place, require_sensor, require_shape
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.scene import stamp
 
@@ -63,6 +63,7 @@ class Star:
 
     def __post_init__(self) -> None:
         require_count(self, 1000, cycles=self.cycles)
+        require(self, -math.inf, row=self.row, col=self.col, start_deg=self.start_deg)
         require(self, above=True, radius_px=self.radius_px)
         require(self, 0.0, 2.5, above=True, finest_cpp=self.finest_cpp)
         require(self, 0.0, 360.0, above=True, sweep_deg=self.sweep_deg)
@@ -193,8 +194,9 @@ def add_star(
     Raises
     ------
     ModelError
-        If the star is too large to be drawn.
+        If the star is too large to be drawn, or a level is not finite.
     """
+    require_finite(mean=mean, amplitude=amplitude)
     side = 2 * (math.ceil(star.radius_px) + ROOM_PX)
     if (side * SUBPIXELS) ** 2 > MAX_SUBPIXELS:
         raise ModelError(
@@ -270,9 +272,13 @@ def star(
     """
     require_sensor(sensor)
     require_shape(shape)
+    middle = (0.5 * (shape[0] - 1), 0.5 * (shape[1] - 1))
+    centre = middle if centre is None else centre
+    require_place(centre=centre)
     require_finite(dark=dark, bright=bright, start_deg=start_deg)
-    if centre is None:
-        centre = (0.5 * (shape[0] - 1), 0.5 * (shape[1] - 1))
+    mean = 0.5 * (dark + bright)
+    around = mean if ground is None else ground
+    require_finite(ground=around)
     target = Star(*centre, radius_px, cycles, wave, start_deg, sweep_deg, finest_cpp)
     room = min(*centre, shape[0] - 1 - centre[0], shape[1] - 1 - centre[1])
     if not dark < bright or radius_px > room:
@@ -280,10 +286,8 @@ def star(
             f"a star of {radius_px:g} px from {dark:g} to {bright:g} was requested: dark has to be "
             f"the lower one, and the image has room for {room:.1f} px"
         )
-    middle = 0.5 * (dark + bright)
-    around = middle if ground is None else ground
     image = np.full(shape, float(around))
-    add_star(image, sensor, target, mean=middle - around, amplitude=0.5 * (bright - dark))
+    add_star(image, sensor, target, mean=mean - around, amplitude=0.5 * (bright - dark))
     added = noise_of_snr(bright - dark, snr, noise, min(dark, around))
     truth = StarTruth(sensor, target, dark, bright, around, added)
     return (image if added is None else added.added_to(image, rng)), truth
