@@ -16,7 +16,7 @@ from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ModelError
 from acutance.geometry.bar_group import Bars
 from acutance.geometry.line import Line, Orientation
-from acutance.optics.block import Transfer
+from acutance.optics.block import Transfer, require_count
 from acutance.optics.sensor import Sensor, normal_direction_deg
 from acutance.simulate.limits import require_finite, require_sensor, require_shape
 from acutance.simulate.noise import Noise, noise_of_snr
@@ -27,6 +27,9 @@ __all__ = ["BarGroup", "BarsTruth", "bars"]
 GAP_PX = 10.0
 """Background between two groups, and around them."""
 
+MAX_BARS = 10_000
+"""Of a group: far more than any target has."""
+
 HARMONICS = 25
 """Odd harmonics of square bars in the contrast: up to 49 times their frequency."""
 
@@ -34,6 +37,9 @@ HARMONICS = 25
 @dataclass(frozen=True)
 class BarGroup(Bars):
     """A group of bars as it lies in a scene."""
+
+    def __post_init__(self) -> None:
+        require_count(self, MAX_BARS, count=self.count)
 
     def patches(self, contrast: float) -> list[Patch]:
         """The bars as rectangles of the given level above the background."""
@@ -176,10 +182,10 @@ def bars(
     """
     require_sensor(sensor)
     sizes = (*periods_px, length_px)
-    if not periods_px or not all(0 < size < math.inf for size in sizes) or count < 1:
+    if not periods_px or not all(0 < size < math.inf for size in sizes):
         raise ModelError(
-            f"bars of periods {tuple(periods_px)}, {count} of {length_px:g} px in a group: there "
-            "has to be a period, and all have to be finite and above 0"
+            f"bars of periods {tuple(periods_px)}, {length_px:g} px long: there has to be a "
+            "period, and all have to be finite and above 0"
         )
     require_finite(dark=dark, bright=bright)
     if not abs(angle_deg) <= 45 or dark == bright:
@@ -206,6 +212,6 @@ def bars(
     image = np.full(shape, float(dark))
     for group in groups:
         add_patches(image, sensor, group.patches(bright - dark))
-    added = noise_of_snr(bright - dark, snr, noise, dark)
+    added = noise_of_snr(bright - dark, snr, noise, min(dark, bright))
     truth = BarsTruth(sensor, groups, dark, bright, added)
     return (image if added is None else added.added_to(image, rng)), truth
