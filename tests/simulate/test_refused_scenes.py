@@ -16,6 +16,7 @@ from acutance.simulate import (
     PulseTarp,
     Star,
     Strip,
+    add_star,
     bars,
     brookings,
     checkerboard,
@@ -31,7 +32,6 @@ from acutance.simulate import (
     star,
     tarp_rows,
 )
-from acutance.simulate.star import add_star
 
 STAR = Star(60.0, 60.0, 40.0)
 SENSOR = reference_systems()["gaussian"]

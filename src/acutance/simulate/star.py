@@ -13,7 +13,7 @@ from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ModelError
-from acutance.geometry.angles import direction_difference
+from acutance.geometry.angles import direction_difference, wrap_direction
 from acutance.optics.block import require, require_count
 from acutance.optics.sensor import Sensor
 from acutance.simulate.ground import MAX_SUBPIXELS, render_raster
@@ -92,19 +92,31 @@ class Star:
         """Modulation (-1 to 1) and coverage (0 to 1) at places, means over about `fine_px`."""
         y, x = rows - self.row, cols - self.col
         radius = np.hypot(x, y)
-        turn = np.arctan2(y, x) - math.radians(self.start_deg)
-        phase = self.cycles * turn
-        wave = np.sin(phase)
+        half = 0.5 * self.sweep_deg
+        turn_deg = wrap_direction(np.degrees(np.arctan2(y, x)) - self.start_deg - half) + half
+        fine_deg = np.degrees(np.minimum(fine_px / np.maximum(radius, 1e-9), 2 * math.pi))
+        first, last = turn_deg - 0.5 * fine_deg, turn_deg + 0.5 * fine_deg
+        if self.sweep_deg < 360:
+            first, last = np.maximum(first, 0.0), np.minimum(last, self.sweep_deg)
         if self.wave == "square":
-            # Distance to the nearest border of a spoke, in fine squares.
-            wave = np.clip(2 * wave * radius / (self.cycles * fine_px), -1.0, 1.0)
+            wave = self._mean_square(first, last)
+        else:
+            wave = np.sin(np.radians(self.cycles * turn_deg))
         wave = wave * np.clip(0.5 + (radius - self.inner_px) / fine_px, 0.0, 1.0)
         cover = np.clip(0.5 + (self.radius_px - radius) / fine_px, 0.0, 1.0)
-        if self.sweep_deg < 360:
-            half = 0.5 * self.sweep_deg
-            inside = np.radians(half - direction_difference(np.degrees(turn), half))
-            cover = cover * np.clip(0.5 + inside * radius / fine_px, 0.0, 1.0)
-        return wave, cover
+        return wave, cover * np.clip((last - first) / fine_deg, 0.0, 1.0)
+
+    def _mean_square(self, first_deg: Floats, last_deg: Floats) -> Floats:
+        """Mean of the square wave between two angles from its beginning.
+
+        At a border of a fan it is that of the part inside: a spoke ends there, and the next one
+        would be of the other sign.
+        """
+        # The integral of a square wave is a triangle wave.
+        first, last = (
+            direction_difference(self.cycles * one, 0.0) for one in (first_deg, last_deg)
+        )
+        return np.asarray((last - first) / (self.cycles * np.maximum(last_deg - first_deg, 1e-9)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,7 +192,7 @@ def add_star(
 
     It is drawn on a grid of 1/10 px. Against 1/30 px no pixel changes by more than 1e-3 of the
     contrast for a sine (at the rim; 1e-4 at the grey centre, nothing between), 2e-3 for a square
-    wave (at the rim; 1e-3 elsewhere).
+    wave (where borders follow the rim or a diagonal of the grid; 1e-3 elsewhere).
 
     Parameters
     ----------
