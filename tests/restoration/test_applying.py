@@ -276,6 +276,19 @@ def scene(tmp_path, bands=1, gsd=0.7, **profile):
     return str(path)
 
 
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"nodata": "x"}, "nodata is 'x': give the number"),
+        ({"saturation": "x"}, "saturation is 'x': give a finite stored value"),
+        ({"saturation": np.inf}, "saturation is inf: give a finite stored value"),
+    ],
+)
+def test_values_of_pixels_are_numbers(landscape, sharpening, wrong, message):
+    with pytest.raises(ac.OptionError, match=message):
+        ac.restore(landscape, sharpening, **wrong)
+
+
 def test_other_pixels_and_another_band_are_refused(sharpening, tmp_path):
     out = str(tmp_path / "out.tif")
     with pytest.raises(ac.OptionError, match="pixels of 2 by 2 m"):

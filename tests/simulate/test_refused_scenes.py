@@ -36,6 +36,7 @@ from acutance.simulate import (
 STAR = Star(60.0, 60.0, 40.0)
 SENSOR = reference_systems()["gaussian"]
 HUGE = (1_000_000, 1_000_000)
+RNG = np.random.default_rng(1)
 NAN, INF = math.nan, math.inf
 
 
@@ -118,6 +119,7 @@ def test_places_and_levels_of_scenes_are_finite(render, named, wrong):
         ({"periods_px": (8.0, INF)}, "finite and above 0"),
         ({"length_px": INF}, "finite and above 0"),
         ({"count": 0}, "BarGroup: count is 0, it has to be a whole number from 1"),
+        ({"count": "x"}, "BarGroup: count is 'x', it has to be a whole number"),
         ({"count": 2.5}, "BarGroup: count is 2.5, it has to be a whole number from 1"),
         ({"count": 100_000_000}, "BarGroup: count is 100000000"),
     ],
@@ -171,7 +173,7 @@ def test_rows_of_tarps_have_tarps(count, turn):
         ({"dark": 5.0, "bright": 5.0}, "leaves no contrast"),
         ({"shift_px": (1e9, 0.0)}, "at most half of the image"),
         ({"shift_px": (0.0, -15.1)}, "at most half of the image"),
-        ({"shift_px": (0.0, NAN)}, "at most half of the image"),
+        ({"shift_px": (0.0, NAN)}, "the column of shift_px is nan"),
         ({"ratio": NAN}, "ratio is nan"),
         ({"ratio": INF}, "ratio is inf"),
     ],
@@ -197,6 +199,32 @@ def test_a_pair_shows_the_same_ground(change, message):
         (lambda: edge(SENSOR, dark="200"), "dark is '200', it has to be a number"),
         (lambda: edge(SENSOR, snr="100"), "snr is '100', it has to be a number"),
         (lambda: edge(SENSOR, angle_deg=None), "angle_deg is None, it has to be a number"),
+        (lambda: edge(SENSOR, noise=3.0), r"noise is 3.0: give Noise\(...\)"),
+        (lambda: edge(SENSOR, regrid=0.5), r"regrid is 0.5: give Regrid\(...\)"),
+        (lambda: edge(SENSOR, ground_noise=0), r"ground_noise is 0: give GroundNoise\(...\)"),
+        (lambda: pulse(SENSOR, noise="x"), r"noise is 'x': give Noise\(...\)"),
+        (lambda: pulse(SENSOR, regrid="x"), r"regrid is 'x': give Regrid\(...\)"),
+        (lambda: pulse(SENSOR, ground_noise="x"), "ground_noise is 'x': give GroundNoise"),
+        (lambda: pulse(SENSOR, length_px={}), "length_px is {}, it has to be a number"),
+        (lambda: points(SENSOR, positions="x"), "positions is 'x': it has to hold numbers"),
+        (lambda: points(SENSOR, fluxes="x"), "fluxes is 'x': it has to hold numbers"),
+        (lambda: points(SENSOR, noise=[1]), r"noise is \[1\]: give Noise"),
+        (lambda: bars(SENSOR, periods_px=8), "periods_px is 8: it has to be a sequence"),
+        (lambda: bars(SENSOR, periods_px="x"), "periods_px is 'x': it has to hold numbers"),
+        (lambda: bars(SENSOR, length_px="x"), "length_px is 'x', it has to be a number"),
+        (lambda: bars(SENSOR, angle_deg="x"), "angle_deg is 'x', it has to be a number"),
+        (lambda: star(SENSOR, centre=3), "centre is 3: it has to be two numbers"),
+        (lambda: star(SENSOR, ground="x"), "ground is 'x', it has to be a number"),
+        (lambda: checkerboard(SENSOR, centre=3), "centre is 3: it has to be two numbers"),
+        (lambda: checkerboard(SENSOR, noise="x"), "noise is 'x': give Noise"),
+        (lambda: checkerboard(SENSOR, tile_px="x"), "tile_px is 'x', it has to be a number"),
+        (lambda: render_site(SENSOR, [], (50, 50), noise="x"), "noise is 'x': give Noise"),
+        (lambda: pair(SENSOR, SENSOR, shift_px=1, rng=RNG), "shift_px is 1: it has to be two"),
+        (lambda: pair(SENSOR, SENSOR, ground=0, rng=RNG), "ground is 0: give PairGround"),
+        (lambda: pair(SENSOR, SENSOR, native=1, rng=RNG), "native is 1: give NativeGrid"),
+        (lambda: pair(SENSOR, SENSOR, noise_low=1, rng=RNG), "noise_low is 1: give Noise"),
+        (lambda: landscape(SENSOR, options=3, rng=RNG), "options is 3: give LandscapeOptions"),
+        (lambda: landscape(SENSOR, noise=3, rng=RNG), "noise is 3: give Noise"),
     ],
 )
 def test_arguments_of_the_wrong_kind_are_refused_by_name(render, message):

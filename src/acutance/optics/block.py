@@ -12,7 +12,16 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
 
-__all__ = ["Axis", "Block", "Transfer", "along_axis", "require", "require_axis", "require_count"]
+__all__ = [
+    "Axis",
+    "Block",
+    "Transfer",
+    "along_axis",
+    "has_otf",
+    "require",
+    "require_axis",
+    "require_count",
+]
 
 Transfer = NDArray[Any]
 """Values of an OTF: real where the blur is symmetric, complex where it is not."""
@@ -38,6 +47,11 @@ def along_axis(u: Floats, v: Floats, axis: Axis) -> Floats:
     """The frequency component a one-dimensional blur acts on, in the common shape."""
     chosen = u if axis == "across" else v
     return np.broadcast_to(np.asarray(chosen, float), np.broadcast_shapes(np.shape(u), np.shape(v)))
+
+
+def has_otf(block: object) -> bool:
+    """Whether an object is a block, or a sensor; the class of one has no OTF of its own."""
+    return not isinstance(block, type) and callable(getattr(block, "otf", None))
 
 
 def require_axis(block: object, axis: str) -> None:

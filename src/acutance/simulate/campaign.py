@@ -18,6 +18,7 @@ from acutance.simulate.edge import Truth
 from acutance.simulate.limits import (
     MAX_SCENE_PIXELS,
     require_finite,
+    require_kind,
     require_rng,
     require_sensor,
     require_shape,
@@ -125,6 +126,8 @@ def render_site(
     require_shape(shape, MAX_SCENE_PIXELS)
     require_texture(texture_std)
     require_finite(ground=ground)
+    require_kind(Placed, placed=placed)
+    require_kind(Noise, noise=noise)
     others = Placed() if placed is None else placed
     image = np.zeros(shape, np.float32)
     if texture_std > 0:

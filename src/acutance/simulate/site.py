@@ -20,6 +20,7 @@ from acutance.simulate.bars import BarsTruth
 from acutance.simulate.edge import Truth
 from acutance.simulate.limits import (
     require_finite,
+    require_numbers,
     require_place,
     require_rng,
     require_sensor,
@@ -157,6 +158,7 @@ def checkerboard(
     if centre is None:
         centre = (0.5 * (shape[0] - 1), 0.5 * (shape[1] - 1))
     require_place(centre=centre)
+    require_numbers(tile_px=tile_px, turn_deg=turn_deg)
     require_texture(texture_std)
     require_finite(dark=dark, bright=bright, ground=ground)
     _require_room(shape, tile_px, turn_deg, centre)
