@@ -424,6 +424,9 @@ def test_a_killed_process_leaves_no_file_of_the_final_name(sharpening, tmp_path)
         assert process.stdout.readline() == b"window\n"
         process.send_signal(signal.SIGKILL)
     assert not out.exists()
+    assert list(tmp_path.glob(".acutance-*"))
+    ac.restore(path, sharpening, out=out)
+    assert not list(tmp_path.glob(".acutance-*"))
 
 
 def test_a_window_needs_no_more_than_its_reach(sharpening):
