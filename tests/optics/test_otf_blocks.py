@@ -231,7 +231,8 @@ def test_defocus_of_nothing_is_diffraction_and_a_lot_reverses_contrast():
 
 
 @pytest.mark.parametrize(
-    ("waves", "obscuration", "error"), [(0.05, 0.0, 5e-5), (0.15, 0.3, 3e-4), (0.15, 0.6, 8e-4)]
+    ("waves", "obscuration", "error"),
+    [(0.05, 0.0, 5e-5), (0.15, 0.3, 3e-4), (0.15, 0.6, 8e-4), (0.4, 0.9, 2e-3), (1.0, 0.99, 7e-3)],
 )
 def test_aberrations_hold_defocus(waves, obscuration, error):
     freq_cpp = np.linspace(0.0, 1.3, 53)
