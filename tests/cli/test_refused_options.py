@@ -96,7 +96,8 @@ def test_measurements_that_mean_nothing(refused, edge_image, words, message):
     ("words", "message"),
     [
         (("edge", "--draws", 1), "give 2 or more, or 0"),
-        (("edge", "--snr", 0), "acutance: --snr is 0, it has to be above 0"),
+        (("edge", "--snr", 0), "acutance: --snr is 0: give 1 to 1e+06"),
+        (("edge", "--draws", 0, "--snr", "inf"), "acutance: --snr is inf: give 1 to 1e+06"),
         (("edge", "--rows", "nan"), "write whole numbers"),
         (("edge", "--rows", "30.5"), "write whole numbers"),
     ],

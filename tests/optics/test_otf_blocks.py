@@ -231,7 +231,8 @@ def test_defocus_of_nothing_is_diffraction_and_a_lot_reverses_contrast():
 
 
 @pytest.mark.parametrize(
-    ("waves", "obscuration", "error"), [(0.05, 0.0, 5e-5), (0.15, 0.3, 3e-4), (0.15, 0.6, 8e-4)]
+    ("waves", "obscuration", "error"),
+    [(0.05, 0.0, 5e-5), (0.15, 0.3, 3e-4), (0.15, 0.6, 8e-4), (0.4, 0.9, 2e-3), (1.0, 0.99, 7e-3)],
 )
 def test_aberrations_hold_defocus(waves, obscuration, error):
     freq_cpp = np.linspace(0.0, 1.3, 53)
@@ -369,6 +370,12 @@ def test_larger_pixels_see_lower_frequencies():
         (lambda: Tdi(8, phases=1.5), "phases is 1.5"),
         (lambda: Gaussian("a"), "Gaussian: sigma_px is 'a', it has to be a number"),
         (lambda: Gaussian(True), "sigma_px is True"),
+        (lambda: Gaussian(0.4, sigma_along_px={}), "Gaussian: sigma_along_px is {}"),
+        (lambda: Gaussian(0.4, -0.1), "Gaussian: sigma_along_px is -0.1"),
+        (lambda: Detector(1.0, height_px=False), "Detector: height_px is False"),
+        (lambda: Rescaled(3, 2.0), "Rescaled: system is 3, which has no OTF"),
+        (lambda: Rescaled(Detector, 2.0), "Rescaled: system is <class .*, which has no OTF"),
+        (lambda: Resampling([1, 2]), r"Resampling: kernel is \[1, 2\], it has to be one of"),
         (lambda: Sharpening("a"), "rows of equally many numbers"),
         (lambda: Sharpening(((0.0, 1.0, 0.0), (1.0,))), "rows of equally many numbers"),
     ],

@@ -224,6 +224,12 @@ def test_profiles_are_kept():
         (lambda: Sensor([Detector()], gsd_m=0.0), "gsd_m is 0"),
         (lambda: Sensor([Sharpening.both_axes(0.2)]).response(), "add the blur"),
         (lambda: Sensor([Detector()]).response(6.0, "vertical"), "'vertical'"),
+        (lambda: Sensor([Detector()]).response(math.inf), "angle_deg is inf: give a finite"),
+        (lambda: Sensor([Detector()]).mtf("x"), "angle_deg is 'x': give a finite number"),
+        (lambda: Sensor([Detector()]).esf(None), "angle_deg is None: give a finite number"),
+        (lambda: Sensor([Detector()]).lsf(angle_deg=[6.0]), r"angle_deg is \[6.0\]: give"),
+        (lambda: Sensor([Detector()]).response_along("x"), "normal_deg is 'x': give a finite"),
+        (lambda: Sensor([Detector()]).profile(math.nan), "normal_deg is nan: give a finite"),
         (lambda: Sensor([Detector()]).psf(step_px=0.7), "step of|steps of 0.7"),
     ],
 )

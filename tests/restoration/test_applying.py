@@ -276,6 +276,19 @@ def scene(tmp_path, bands=1, gsd=0.7, **profile):
     return str(path)
 
 
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"nodata": "x"}, "nodata is 'x': give the number"),
+        ({"saturation": "x"}, "saturation is 'x': give a finite stored value"),
+        ({"saturation": np.inf}, "saturation is inf: give a finite stored value"),
+    ],
+)
+def test_values_of_pixels_are_numbers(landscape, sharpening, wrong, message):
+    with pytest.raises(ac.OptionError, match=message):
+        ac.restore(landscape, sharpening, **wrong)
+
+
 def test_other_pixels_and_another_band_are_refused(sharpening, tmp_path):
     out = str(tmp_path / "out.tif")
     with pytest.raises(ac.OptionError, match="pixels of 2 by 2 m"):
@@ -293,6 +306,12 @@ def test_other_pixels_and_another_band_are_refused(sharpening, tmp_path):
     for wrong in ("pan", 1.5, [1, "2"]):
         with pytest.raises(ac.OptionError, match="give numbers from 1, or 'all'"):
             ac.restore(several, sharpening, out=out, bands=wrong)
+    with pytest.raises(ac.OptionError, match="no band was named"):
+        ac.restore(several, sharpening, out=tmp_path / "copy.tif", bands=[])
+    assert not (tmp_path / "copy.tif").exists()
+    done = ac.restore(several, sharpening, out=out, bands=[1, 1])
+    assert done.bands[1].pixels == 40 * 50
+    assert "; bands 1; " in rewriting.stored_tags(out)["ACUTANCE_RESTORATION"]
     with pytest.raises(ac.ImageError, match="band 7"):
         ac.restore(several, sharpening, out=out, bands=7, accept_mismatch=True)
 
@@ -405,6 +424,9 @@ def test_a_killed_process_leaves_no_file_of_the_final_name(sharpening, tmp_path)
         assert process.stdout.readline() == b"window\n"
         process.send_signal(signal.SIGKILL)
     assert not out.exists()
+    assert list(tmp_path.glob(".acutance-*"))
+    ac.restore(path, sharpening, out=out)
+    assert not list(tmp_path.glob(".acutance-*"))
 
 
 def test_a_window_needs_no_more_than_its_reach(sharpening):

@@ -2,6 +2,7 @@
 
 import json
 import math
+import sys
 
 import numpy as np
 import pytest
@@ -108,6 +109,20 @@ def test_a_pixel_of_a_sine_star_is_an_integral(star_of):
     assert image[63, 92] == pytest.approx(expected, abs=0.01)
     assert abs(expected - 700) > 50
     assert truth.star.inner_px == pytest.approx(36 / (2 * math.pi * 1.5))
+
+
+@pytest.mark.parametrize("sweep", [300.0, 123.0, 360.0])
+def test_a_square_fan_is_drawn_finely_enough_up_to_its_borders(star_of, monkeypatch, sweep):
+    """Spokes begin and end there: what is beyond belongs to none."""
+    drawn = []
+    for subpixels in (10, 30):
+        monkeypatch.setattr(sys.modules["acutance.simulate.star"], "SUBPIXELS", subpixels)
+        image, _ = star_of(
+            GENERIC, cycles=24, shape=(40, 42), radius_px=18.0, wave="square", ground=150.0,
+            start_deg=20.0, sweep_deg=sweep,
+        )  # fmt: skip
+        drawn.append(image / 1000)
+    np.testing.assert_allclose(drawn[0], drawn[1], atol=2e-3)
 
 
 def test_a_fan_holds_its_directions_only(star_of):

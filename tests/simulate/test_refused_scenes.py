@@ -9,7 +9,14 @@ import pytest
 from acutance.errors import ModelError, OptionError
 from acutance.optics import Detector, presets
 from acutance.simulate import (
+    EdgeTarps,
     Noise,
+    Patch,
+    Point,
+    PulseTarp,
+    Star,
+    Strip,
+    add_star,
     bars,
     brookings,
     checkerboard,
@@ -26,8 +33,10 @@ from acutance.simulate import (
     tarp_rows,
 )
 
+STAR = Star(60.0, 60.0, 40.0)
 SENSOR = reference_systems()["gaussian"]
 HUGE = (1_000_000, 1_000_000)
+RNG = np.random.default_rng(1)
 NAN, INF = math.nan, math.inf
 
 
@@ -38,7 +47,6 @@ NAN, INF = math.nan, math.inf
         lambda: pulse(SENSOR, shape=HUGE),
         lambda: star(SENSOR, shape=HUGE),
         lambda: bars(SENSOR, length_px=1e7),
-        lambda: bars(SENSOR, count=100_000_000),
         lambda: points(SENSOR, shape=HUGE),
         lambda: points(SENSOR, positions=[(1e9, 1e9)]),
         lambda: checkerboard(SENSOR, shape=HUGE),
@@ -69,13 +77,51 @@ def test_levels_are_numbers(render, level):
         render(SENSOR, bright=level)
 
 
+@pytest.mark.parametrize("wrong", [NAN, INF])
+@pytest.mark.parametrize(
+    ("render", "named"),
+    [
+        (lambda x: points(SENSOR, positions=[(20, 20)], fluxes=[x]), "a flux is"),
+        (lambda x: star(SENSOR, ground=x), "ground is"),
+        (lambda x: star(SENSOR, centre=(x, 2.0)), "the row of centre is"),
+        (lambda x: Star(x, 60.0, 40.0), "Star: row is"),
+        (lambda x: add_star(np.zeros((9, 9)), SENSOR, STAR, mean=x, amplitude=1.0), "mean is"),
+        (lambda x: checkerboard(SENSOR, centre=(60.0, x)), "the column of centre is"),
+        (lambda x: render_site(SENSOR, [], (50, 50), ground=x), "ground is"),
+        (lambda x: EdgeTarps("a", x, 60.0, 6.0, 20.0, 100.0, 900.0), "EdgeTarps: row is"),
+        (lambda x: EdgeTarps("a", 60.0, 60.0, x, 20.0, 100.0, 900.0), "EdgeTarps: normal_deg is"),
+        (lambda x: EdgeTarps("a", 60.0, 60.0, 6.0, 20.0, x, 900.0), "EdgeTarps: dark is"),
+        (lambda x: PulseTarp("a", 60.0, 60.0, 6.0, 3.0, 50.0, x), "PulseTarp: level is"),
+        (lambda x: Patch(x, 1.0, 5.0, 5.0, 0.0, 10.0), "Patch: row is"),
+        (lambda x: Patch(1.0, 1.0, 5.0, 5.0, 0.0, x), "Patch: contrast is"),
+        (lambda x: Strip(1.0, 1.0, x, 5.0, 10.0), "Strip: normal_deg is"),
+        (lambda x: Point(1.0, 1.0, x), "Point: flux is"),
+        (
+            lambda x: next(
+                overflights(
+                    lambda when: SENSOR, [], (50, 50), [datetime(2026, 1, 1)],
+                    noise_std=x, air_px=0.1, rng=np.random.default_rng(1),
+                )
+            ),
+            "noise_std is",
+        ),
+    ],
+)  # fmt: skip
+def test_places_and_levels_of_scenes_are_finite(render, named, wrong):
+    with pytest.raises(ModelError, match=rf"^{named} .*finite( number.*)?$"):
+        render(wrong)
+
+
 @pytest.mark.parametrize(
     ("sizes", "message"),
     [
         ({"periods_px": (8.0, NAN)}, "finite and above 0"),
         ({"periods_px": (8.0, INF)}, "finite and above 0"),
         ({"length_px": INF}, "finite and above 0"),
-        ({"count": 0}, "finite and above 0"),
+        ({"count": 0}, "BarGroup: count is 0, it has to be a whole number from 1"),
+        ({"count": "x"}, "BarGroup: count is 'x', it has to be a whole number"),
+        ({"count": 2.5}, "BarGroup: count is 2.5, it has to be a whole number from 1"),
+        ({"count": 100_000_000}, "BarGroup: count is 100000000"),
     ],
 )
 def test_bars_have_a_size(sizes, message):
@@ -127,7 +173,7 @@ def test_rows_of_tarps_have_tarps(count, turn):
         ({"dark": 5.0, "bright": 5.0}, "leaves no contrast"),
         ({"shift_px": (1e9, 0.0)}, "at most half of the image"),
         ({"shift_px": (0.0, -15.1)}, "at most half of the image"),
-        ({"shift_px": (0.0, NAN)}, "at most half of the image"),
+        ({"shift_px": (0.0, NAN)}, "the column of shift_px is nan"),
         ({"ratio": NAN}, "ratio is nan"),
         ({"ratio": INF}, "ratio is inf"),
     ],
@@ -153,6 +199,32 @@ def test_a_pair_shows_the_same_ground(change, message):
         (lambda: edge(SENSOR, dark="200"), "dark is '200', it has to be a number"),
         (lambda: edge(SENSOR, snr="100"), "snr is '100', it has to be a number"),
         (lambda: edge(SENSOR, angle_deg=None), "angle_deg is None, it has to be a number"),
+        (lambda: edge(SENSOR, noise=3.0), r"noise is 3.0: give Noise\(...\)"),
+        (lambda: edge(SENSOR, regrid=0.5), r"regrid is 0.5: give Regrid\(...\)"),
+        (lambda: edge(SENSOR, ground_noise=0), r"ground_noise is 0: give GroundNoise\(...\)"),
+        (lambda: pulse(SENSOR, noise="x"), r"noise is 'x': give Noise\(...\)"),
+        (lambda: pulse(SENSOR, regrid="x"), r"regrid is 'x': give Regrid\(...\)"),
+        (lambda: pulse(SENSOR, ground_noise="x"), "ground_noise is 'x': give GroundNoise"),
+        (lambda: pulse(SENSOR, length_px={}), "length_px is {}, it has to be a number"),
+        (lambda: points(SENSOR, positions="x"), "positions is 'x': it has to hold numbers"),
+        (lambda: points(SENSOR, fluxes="x"), "fluxes is 'x': it has to hold numbers"),
+        (lambda: points(SENSOR, noise=[1]), r"noise is \[1\]: give Noise"),
+        (lambda: bars(SENSOR, periods_px=8), "periods_px is 8: it has to be a sequence"),
+        (lambda: bars(SENSOR, periods_px="x"), "periods_px is 'x': it has to hold numbers"),
+        (lambda: bars(SENSOR, length_px="x"), "length_px is 'x', it has to be a number"),
+        (lambda: bars(SENSOR, angle_deg="x"), "angle_deg is 'x', it has to be a number"),
+        (lambda: star(SENSOR, centre=3), "centre is 3: it has to be two numbers"),
+        (lambda: star(SENSOR, ground="x"), "ground is 'x', it has to be a number"),
+        (lambda: checkerboard(SENSOR, centre=3), "centre is 3: it has to be two numbers"),
+        (lambda: checkerboard(SENSOR, noise="x"), "noise is 'x': give Noise"),
+        (lambda: checkerboard(SENSOR, tile_px="x"), "tile_px is 'x', it has to be a number"),
+        (lambda: render_site(SENSOR, [], (50, 50), noise="x"), "noise is 'x': give Noise"),
+        (lambda: pair(SENSOR, SENSOR, shift_px=1, rng=RNG), "shift_px is 1: it has to be two"),
+        (lambda: pair(SENSOR, SENSOR, ground=0, rng=RNG), "ground is 0: give PairGround"),
+        (lambda: pair(SENSOR, SENSOR, native=1, rng=RNG), "native is 1: give NativeGrid"),
+        (lambda: pair(SENSOR, SENSOR, noise_low=1, rng=RNG), "noise_low is 1: give Noise"),
+        (lambda: landscape(SENSOR, options=3, rng=RNG), "options is 3: give LandscapeOptions"),
+        (lambda: landscape(SENSOR, noise=3, rng=RNG), "noise is 3: give Noise"),
     ],
 )
 def test_arguments_of_the_wrong_kind_are_refused_by_name(render, message):
@@ -227,6 +299,7 @@ def test_an_snr_goes_with_noise_that_leaves_the_strength_open():
         (edge, {"dark": 200.0}),
         (pulse, {"dark": 300.0, "right_dark": 200.0}),
         (bars, {"dark": 200.0}),
+        (bars, {"dark": 1200.0, "bright": 200.0}),
         (star, {"dark": 200.0}),
         (checkerboard, {"dark": 200.0, "bright": 900.0, "ground": 700.0}),
         (points, {"positions": [(12.0, 12.0)], "background": 200.0}),
@@ -243,3 +316,5 @@ def test_shot_noise_of_negative_signal_is_refused():
     with pytest.raises(ModelError, match=r"shot_gain is 1 and the lowest level -200"):
         edge(SENSOR, dark=-200.0, bright=100.0, noise=Noise(shot_gain=1.0), rng=rng)
     edge(SENSOR, dark=-200.0, bright=100.0, noise=Noise(read=1.0), rng=rng)
+    with pytest.raises(ModelError, match=r"shot_gain is 1 and the lowest level -100"):
+        bars(SENSOR, dark=1000.0, bright=-100.0, noise=Noise(shot_gain=1.0), rng=rng)

@@ -141,6 +141,16 @@ def test_truth_of_a_shifted_image_is_exact(name, angle):
     assert truth.mtf_nyquist.value < sensor.response(angle).mtf_nyquist.value
 
 
+@pytest.mark.parametrize(("scale", "kernel"), [(1.0, "cubic"), (1.0, "nearest"), (1.02, "spline")])
+def test_whole_pixels_of_a_shift_change_nothing(scale, kernel):
+    near, far = (
+        edge(SKEWED, regrid=Regrid(row, col, scale, kernel))
+        for row, col in ((-0.25, 0.5), (999_999.75, -20_001.5))
+    )
+    np.testing.assert_allclose(near[0], far[0], atol=1e-6)
+    assert near[1].rer.value == pytest.approx(far[1].rer.value, abs=1e-9)
+
+
 @pytest.mark.parametrize("sensor", [SENSOR, SKEWED], ids=["symmetric", "asymmetric"])
 def test_truth_of_a_stretched_image_is_the_mean_over_phases(sensor):
     regrid = Regrid(scale=1.031, kernel="bilinear")

@@ -136,7 +136,11 @@ def test_the_simulation_can_refuse():
         ({"rows": (100_000,)}, "2000 are the most"),
         ({"angles_deg": (0.0,)}, "no sub-pixel phases"),
         ({"widths_px": (80.0,)}, "check the width and the GSD"),
-        ({"snr": 0.0}, "above 0"),
+        ({"snr": 0.0}, "snr is 0: give 1 to 1e[+]06"),
+        ({"snr": 1e-300}, "snr is 1e-300: give 1"),
+        ({"snr": math.inf}, "snr is inf: give 1"),
+        ({"window_px": math.inf}, "window_px is inf: give 0.1 to 1000"),
+        ({"accuracy": math.inf}, "accuracy is inf: it has to be finite"),
         ({"target": "star"}, "edge"),
     ],
 )

@@ -43,7 +43,9 @@ class Gaussian:
     sigma_along_px: float | None = None
 
     def __post_init__(self) -> None:
-        require(self, sigma_px=self.sigma_px, sigma_along_px=self.sigma_along_px or 0.0)
+        require(self, sigma_px=self.sigma_px)
+        if self.sigma_along_px is not None:
+            require(self, sigma_along_px=self.sigma_along_px)
 
     def otf(self, u: Floats, v: Floats) -> Transfer:
         along = self.sigma_px if self.sigma_along_px is None else self.sigma_along_px

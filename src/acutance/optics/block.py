@@ -12,7 +12,16 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
 
-__all__ = ["Axis", "Block", "Transfer", "along_axis", "require", "require_axis", "require_count"]
+__all__ = [
+    "Axis",
+    "Block",
+    "Transfer",
+    "along_axis",
+    "has_otf",
+    "require",
+    "require_axis",
+    "require_count",
+]
 
 Transfer = NDArray[Any]
 """Values of an OTF: real where the blur is symmetric, complex where it is not."""
@@ -38,6 +47,11 @@ def along_axis(u: Floats, v: Floats, axis: Axis) -> Floats:
     """The frequency component a one-dimensional blur acts on, in the common shape."""
     chosen = u if axis == "across" else v
     return np.broadcast_to(np.asarray(chosen, float), np.broadcast_shapes(np.shape(u), np.shape(v)))
+
+
+def has_otf(block: object) -> bool:
+    """Whether an object is a block, or a sensor; the class of one has no OTF of its own."""
+    return not isinstance(block, type) and callable(getattr(block, "otf", None))
 
 
 def require_axis(block: object, axis: str) -> None:
@@ -69,11 +83,10 @@ def require(
             raise ModelError(f"{type(block).__name__}: {name} is {value!r}, it has to be a number")
         inside = (value > low if above else value >= low) and value <= high
         if not (inside and math.isfinite(value)):
-            relation = "above" if above else "at least"
+            lower = "" if math.isinf(low) else f", {'above' if above else 'at least'} {low:g}"
             upper = "" if math.isinf(high) else f" and at most {high:g}"
             raise ModelError(
-                f"{type(block).__name__}: {name} is {value:g}, it has to be finite, "
-                f"{relation} {low:g}{upper}"
+                f"{type(block).__name__}: {name} is {value:g}, it has to be finite{lower}{upper}"
             )
 
 

@@ -29,7 +29,9 @@ class Detector:
     height_px: float | None = None
 
     def __post_init__(self) -> None:
-        require(self, width_px=self.width_px, height_px=self.height_px or 0.0)
+        require(self, width_px=self.width_px)
+        if self.height_px is not None:
+            require(self, height_px=self.height_px)
 
     def otf(self, u: Floats, v: Floats) -> Transfer:
         height = self.width_px if self.height_px is None else self.height_px

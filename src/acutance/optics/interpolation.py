@@ -42,7 +42,8 @@ def require_kernel(of: str, kernel: str) -> None:
     ModelError
         It names what was given, of which block or function.
     """
-    if kernel not in KERNEL_REACH_PX:
+    # A list cannot be looked for among the names of a dict.
+    if not isinstance(kernel, str) or kernel not in KERNEL_REACH_PX:
         raise ModelError(
             f"{of}: kernel is {kernel!r}, it has to be one of "
             + ", ".join(repr(name) for name in KERNEL_REACH_PX)

@@ -9,7 +9,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
-from acutance.optics.block import Block, Transfer, require
+from acutance.optics.block import Block, Transfer, has_otf, require
 from acutance.optics.interpolation import (
     KERNEL_REACH_PX,
     Interpolation,
@@ -165,6 +165,11 @@ class Rescaled:
     scale: float
 
     def __post_init__(self) -> None:
+        if not has_otf(self.system):
+            raise ModelError(
+                f"Rescaled: system is {self.system!r:.80}, which has no OTF: give a block such as "
+                "Gaussian(0.4), or a Sensor"
+            )
         require(self, above=True, scale=self.scale)
 
     def otf(self, u: Floats, v: Floats) -> Transfer:

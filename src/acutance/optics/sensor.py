@@ -18,7 +18,7 @@ from acutance.curves.grid import FREQ_CPP, Floats
 from acutance.errors import ModelError
 from acutance.optics.aberrations import Aberrations
 from acutance.optics.aperture import Defocus, Diffraction
-from acutance.optics.block import Axis, Block, Transfer
+from acutance.optics.block import Axis, Block, Transfer, has_otf
 from acutance.optics.profile import Profile
 
 __all__ = ["TRUTH_DISTANCE_PX", "Sensor", "normal_direction_deg", "spread_over_plane"]
@@ -36,10 +36,21 @@ def normal_direction_deg(angle_deg: float, orientation: Axis) -> float:
         Tilt of the edge against the nearer image axis; its sign is the sense of the turn.
     orientation : {"across", "along"}
         The axis the normal is near to: "across" the column axis, "along" the row axis.
+
+    Raises
+    ------
+    ModelError
+        If the tilt is no finite number, or the orientation none of these.
     """
+    _require_angle("angle_deg", angle_deg)
     if orientation not in ("across", "along"):
         raise ModelError(f'orientation is {orientation!r}, it has to be "across" or "along"')
     return angle_deg + (90.0 if orientation == "along" else 0.0)
+
+
+def _require_angle(name: str, angle_deg: float) -> None:
+    if not isinstance(angle_deg, Real) or not math.isfinite(angle_deg):
+        raise ModelError(f"{name} is {angle_deg!r:.80}: give a finite number of degrees")
 
 
 def _as_blocks(blocks: Any) -> tuple[Block, ...]:
@@ -58,7 +69,7 @@ def _as_blocks(blocks: Any) -> tuple[Block, ...]:
             "[Gaussian(0.4), Detector()]"
         ) from None
     for number, one in enumerate(found, start=1):
-        if isinstance(one, type) or not callable(getattr(one, "otf", None)):
+        if not has_otf(one):
             raise ModelError(
                 f"block {number} is {one!r}, which has no OTF: give blocks such as Gaussian(0.4) "
                 "or Detector()"
@@ -153,7 +164,13 @@ class Sensor:
         """Edge and line spread functions at any distance, for a normal in any direction.
 
         Profiles are cached. See `Profile` for the accuracy.
+
+        Raises
+        ------
+        ModelError
+            If the direction is no finite number, or the sensor is infinitely sharp.
         """
+        _require_angle("normal_deg", normal_deg)
         return _profile(self, float(normal_deg))
 
     def response_along(self, normal_deg: float) -> Response:

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -23,6 +22,7 @@ from acutance.raster.dataset import (
     opened_dataset,
     read_in_our_words,
 )
+from acutance.raster.partial_folder import partial_folder
 from acutance.raster.pixels import equals_nodata
 from acutance.raster.region import Box
 from acutance.raster.unified_nodata import UnifiedNodata, unified_nodata
@@ -121,7 +121,7 @@ def rewrite_image(
             source = stack.enter_context(open_quietly(path))
             values = unified_nodata(source, nodata)
         with written_in_our_words(target, _ADVICE):
-            folder = stack.enter_context(TemporaryDirectory(prefix=".acutance-", dir=target.parent))
+            folder = stack.enter_context(partial_folder(target))
             plain = os.path.join(folder, "plain.tif")
             made = open_quietly(plain, "w", **_profile(source, values.common))
             stack.callback(made.close)

@@ -6,7 +6,6 @@ import os
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -14,6 +13,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from acutance.errors import ImageError
 from acutance.raster.gsd import GSD_TAGS, Gsd
+from acutance.raster.partial_folder import partial_folder
 from acutance.raster.region import Box
 
 __all__ = ["write_geotiff", "write_geotiff_tiles", "written_in_our_words"]
@@ -36,7 +36,8 @@ def write_geotiff(
 ) -> None:
     """Write an image as a tiled, compressed GeoTIFF, whole or not at all.
 
-    The file is written under another name in the same folder and renamed when it is complete.
+    The file is written in a hidden folder beside it and renamed when it is complete. What a killed
+    process left of one, the next that writes there removes.
 
     Parameters
     ----------
@@ -149,7 +150,7 @@ def _write(
     with ExitStack() as stack:
         # Errors of what makes the parts are its own, so the loop stands outside.
         with written_in_our_words(target, _advice(dtype)):
-            folder = stack.enter_context(TemporaryDirectory(prefix=".acutance-", dir=target.parent))
+            folder = stack.enter_context(partial_folder(target))
             stack.enter_context(Env(GDAL_CACHEMAX=CACHE_BYTES))
             partial = os.path.join(folder, "image.tif")
             dataset = stack.enter_context(open_quietly(partial, "w", **profile))

@@ -9,6 +9,7 @@ import warnings
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from numbers import Real
 from pathlib import Path
 from typing import Any, Literal, overload
 
@@ -22,6 +23,7 @@ from acutance.raster.pixels import (
     equals_nodata,
     largest_count,
     require_image_array,
+    require_nodata,
     storable_nodata,
 )
 from acutance.restoration.filter_match import (
@@ -139,7 +141,8 @@ def restore(
     Raises
     ------
     OptionError
-        If the filter was made for other pixels or another band, or `out` is the input.
+        If the filter was made for other pixels or another band, `out` is the input, or an argument
+        is of the wrong kind.
     ImageError
         If the image cannot be read or the new one not be written.
     NoDataError
@@ -150,6 +153,7 @@ def restore(
             f"the filter is a {type(filter).__name__}: give one of design_restoration, or "
             "RestorationFilter.read(path)"
         )
+    require_nodata(nodata)
     if isinstance(image, Image):
         raise OptionError(
             "the image is an Image, which is one band as it is measured: give its pixels, "
@@ -319,7 +323,7 @@ def _stored_type(
     dtype: np.dtype[Any], nodata: float | None, saturation: float | None, largest: float | None
 ) -> StoredType:
     if saturation is not None:
-        if not math.isfinite(saturation):
+        if not isinstance(saturation, Real) or not math.isfinite(saturation):
             raise OptionError(f"saturation is {saturation!r}: give a finite stored value")
         return StoredType(dtype, nodata, float(saturation))
     return StoredType(dtype, nodata, largest)

@@ -51,11 +51,15 @@ def chosen_bands(
 
 
 def _numbers(bands: Any) -> list[int]:
-    """Bands as numbers, whatever kind of integers they were given as."""
+    """Bands as numbers, each once, whatever kind of integers they were given as."""
     try:
-        return [operator.index(one) for one in (bands if np.iterable(bands) else [bands])]
+        numbers = [operator.index(one) for one in (bands if np.iterable(bands) else [bands])]
     except TypeError:
         raise OptionError(f"bands is {bands!r:.80}: give numbers from 1, or 'all'") from None
+    if not numbers:
+        # Without this a copy of the image would be written and tagged as restored.
+        raise OptionError("bands is empty, no band was named: give numbers from 1, or 'all'")
+    return list(dict.fromkeys(numbers))
 
 
 def require_match(

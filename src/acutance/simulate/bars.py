@@ -13,12 +13,18 @@ from acutance.curves import Response
 from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
-from acutance.errors import ModelError
+from acutance.errors import ModelError, OptionError
 from acutance.geometry.bar_group import Bars
 from acutance.geometry.line import Line, Orientation
-from acutance.optics.block import Transfer
+from acutance.optics.block import Transfer, require_count
 from acutance.optics.sensor import Sensor, normal_direction_deg
-from acutance.simulate.limits import require_finite, require_sensor, require_shape
+from acutance.simulate.limits import (
+    require_finite,
+    require_floats,
+    require_numbers,
+    require_sensor,
+    require_shape,
+)
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.scene import Patch, add_patches
 
@@ -27,6 +33,9 @@ __all__ = ["BarGroup", "BarsTruth", "bars"]
 GAP_PX = 10.0
 """Background between two groups, and around them."""
 
+MAX_BARS = 10_000
+"""Of a group: far more than any target has."""
+
 HARMONICS = 25
 """Odd harmonics of square bars in the contrast: up to 49 times their frequency."""
 
@@ -34,6 +43,9 @@ HARMONICS = 25
 @dataclass(frozen=True)
 class BarGroup(Bars):
     """A group of bars as it lies in a scene."""
+
+    def __post_init__(self) -> None:
+        require_count(self, MAX_BARS, count=self.count)
 
     def patches(self, contrast: float) -> list[Patch]:
         """The bars as rectangles of the given level above the background."""
@@ -175,11 +187,17 @@ def bars(
         If an argument is of the wrong kind.
     """
     require_sensor(sensor)
-    sizes = (*periods_px, length_px)
-    if not periods_px or not all(0 < size < math.inf for size in sizes) or count < 1:
+    require_numbers(length_px=length_px, angle_deg=angle_deg)
+    periods = require_floats("periods_px", periods_px)
+    if periods.ndim != 1:
+        raise OptionError(
+            f"periods_px is {periods_px!r:.80}: it has to be a sequence, a number for each group"
+        )
+    sizes = (*periods.tolist(), length_px)
+    if not periods.size or not all(0 < size < math.inf for size in sizes):
         raise ModelError(
-            f"bars of periods {tuple(periods_px)}, {count} of {length_px:g} px in a group: there "
-            "has to be a period, and all have to be finite and above 0"
+            f"bars of periods {tuple(periods.tolist())}, {length_px:g} px long: there has to be a "
+            "period, and all have to be finite and above 0"
         )
     require_finite(dark=dark, bright=bright)
     if not abs(angle_deg) <= 45 or dark == bright:
@@ -189,11 +207,11 @@ def bars(
         )
     normal = normal_direction_deg(angle_deg, orientation)
     pitch = length_px + GAP_PX
-    offsets = (np.arange(len(periods_px)) - 0.5 * (len(periods_px) - 1)) * pitch
+    offsets = (np.arange(periods.size) - 0.5 * (periods.size - 1)) * pitch
     across = Line(0.0, 0.0, normal).normal
     loose = [
-        BarGroup(float(t) * across[0], -float(t) * across[1], normal, float(p), count, length_px)
-        for t, p in zip(offsets, periods_px, strict=True)
+        BarGroup(float(t) * across[0], -float(t) * across[1], normal, p, count, length_px)
+        for t, p in zip(offsets, periods.tolist(), strict=True)
     ]
     corners = np.concatenate([group.region for group in loose])
     low, high = corners.min(axis=0) - GAP_PX, corners.max(axis=0) + GAP_PX
@@ -206,6 +224,6 @@ def bars(
     image = np.full(shape, float(dark))
     for group in groups:
         add_patches(image, sensor, group.patches(bright - dark))
-    added = noise_of_snr(bright - dark, snr, noise, dark)
+    added = noise_of_snr(bright - dark, snr, noise, min(dark, bright))
     truth = BarsTruth(sensor, groups, dark, bright, added)
     return (image if added is None else added.added_to(image, rng)), truth

@@ -15,7 +15,14 @@ from acutance.geometry.line import Line
 from acutance.optics.sensor import Sensor, normal_direction_deg
 from acutance.simulate.bars import BarGroup, BarsTruth
 from acutance.simulate.edge import Truth
-from acutance.simulate.limits import MAX_SCENE_PIXELS, require_rng, require_sensor, require_shape
+from acutance.simulate.limits import (
+    MAX_SCENE_PIXELS,
+    require_finite,
+    require_kind,
+    require_rng,
+    require_sensor,
+    require_shape,
+)
 from acutance.simulate.noise import Noise
 from acutance.simulate.points import PointsTruth, mirror_columns, peak_per_flux
 from acutance.simulate.pulse import PulseTruth
@@ -110,14 +117,17 @@ def render_site(
     Raises
     ------
     ModelError
-        If the image is too large, a target reaches beyond it, or randomness is requested without
-        `rng`.
+        If the image is too large, a target reaches beyond it, a level is not finite, or randomness
+        is requested without `rng`.
     OptionError
         If an argument is of the wrong kind.
     """
     require_sensor(sensor)
     require_shape(shape, MAX_SCENE_PIXELS)
     require_texture(texture_std)
+    require_finite(ground=ground)
+    require_kind(Placed, placed=placed)
+    require_kind(Noise, noise=noise)
     others = Placed() if placed is None else placed
     image = np.zeros(shape, np.float32)
     if texture_std > 0:

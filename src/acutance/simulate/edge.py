@@ -15,7 +15,13 @@ from acutance.geometry.angles import wrap_direction
 from acutance.geometry.line import Line, Orientation
 from acutance.optics.sensor import Sensor, normal_direction_deg
 from acutance.simulate.ground import GroundNoise
-from acutance.simulate.limits import require_finite, require_numbers, require_sensor, require_shape
+from acutance.simulate.limits import (
+    require_finite,
+    require_kind,
+    require_numbers,
+    require_sensor,
+    require_shape,
+)
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.resample import Regrid, render_regridded
 
@@ -146,6 +152,8 @@ def edge(
     if polarity not in ("rising", "falling"):
         raise ModelError(f'polarity is {polarity!r}, it has to be "rising" or "falling"')
     require_shape(shape)
+    require_kind(Regrid, regrid=regrid)
+    require_kind(GroundNoise, ground_noise=ground_noise)
     require_finite(dark=dark, bright=bright, offset_px=offset_px)
     if not dark < bright:
         raise ModelError(

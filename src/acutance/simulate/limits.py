@@ -8,7 +8,9 @@ from numbers import Real
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from acutance.curves.grid import Floats
 from acutance.errors import ModelError, OptionError
 from acutance.optics.sensor import Sensor
 
@@ -16,7 +18,10 @@ __all__ = [
     "MAX_PIXELS",
     "MAX_SCENE_PIXELS",
     "require_finite",
+    "require_floats",
+    "require_kind",
     "require_numbers",
+    "require_place",
     "require_rng",
     "require_sensor",
     "require_shape",
@@ -79,6 +84,53 @@ def require_finite(**values: float) -> None:
     for name, value in values.items():
         if not math.isfinite(value):
             raise ModelError(f"{name} is {value:g}, it has to be a finite number")
+
+
+def require_kind(kind: type, **values: Any) -> None:
+    """Refuse what is neither left out (``None``) nor an object of a class.
+
+    Raises
+    ------
+    OptionError
+        Names the argument and the class.
+    """
+    for name, value in values.items():
+        if value is not None and not isinstance(value, kind):
+            raise OptionError(f"{name} is {value!r:.80}: give {kind.__name__}(...)")
+
+
+def require_floats(name: str, values: ArrayLike) -> Floats:
+    """Numbers of a caller as an array.
+
+    Raises
+    ------
+    OptionError
+        If it holds something else: names the argument.
+    """
+    try:
+        return np.asarray(values, float)
+    except (TypeError, ValueError):
+        raise OptionError(f"{name} is {values!r:.80}: it has to hold numbers") from None
+
+
+def require_place(**values: tuple[float, float]) -> None:
+    """Refuse what is no pair of finite numbers, (row, column).
+
+    Raises
+    ------
+    OptionError
+        If it is something else than two numbers: names the argument.
+    ModelError
+        If one of them is infinite, or NaN.
+    """
+    for name, place in values.items():
+        try:
+            row, col = place
+        except (TypeError, ValueError):
+            raise OptionError(
+                f"{name} is {place!r:.80}: it has to be two numbers, (row, column)"
+            ) from None
+        require_finite(**{f"the row of {name}": row, f"the column of {name}": col})
 
 
 def require_rng(rng: np.random.Generator | None, wanted: str) -> np.random.Generator:

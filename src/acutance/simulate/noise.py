@@ -10,7 +10,7 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
 from acutance.optics.block import require
-from acutance.simulate.limits import require_numbers, require_rng
+from acutance.simulate.limits import require_kind, require_numbers, require_rng
 
 __all__ = ["Noise", "noise_of_snr"]
 
@@ -86,7 +86,10 @@ def noise_of_snr(
     ModelError
         If both set the strength of the white noise, the SNR is not above 0, or the lowest level is
         saturated or has no shot noise.
+    OptionError
+        If one of them is of the wrong kind.
     """
+    require_kind(Noise, noise=noise)
     if noise is not None and darkest is not None:
         _require_darkest(noise, darkest)
     if snr is None:

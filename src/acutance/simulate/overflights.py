@@ -13,7 +13,7 @@ from acutance.errors import ModelError
 from acutance.optics.aperture import Gaussian
 from acutance.optics.sensor import Sensor
 from acutance.simulate.campaign import render_site
-from acutance.simulate.limits import require_sensor
+from acutance.simulate.limits import require_finite, require_sensor
 from acutance.simulate.tarps import EdgeTarps, PulseTarp
 
 __all__ = ["Overflight", "overflights"]
@@ -79,10 +79,11 @@ def overflights(
     Raises
     ------
     ModelError
-        If a deviation is negative.
+        If a deviation is negative or not finite.
     OptionError
         If `sensor_on` gives no sensor.
     """
+    require_finite(noise_std=noise_std, air_px=air_px, pointing_px=pointing_px)
     if min(noise_std, air_px, pointing_px) < 0:
         raise ModelError(
             f"noise {noise_std:g}, air {air_px:g} px and pointing {pointing_px:g} px were "

@@ -18,7 +18,14 @@ from acutance.geometry.line import Orientation
 from acutance.optics import Rescaled, Sensor
 from acutance.optics.block import Block, Transfer, require
 from acutance.simulate.ground import alias_bands
-from acutance.simulate.limits import require_finite, require_rng, require_sensor, require_shape
+from acutance.simulate.limits import (
+    require_finite,
+    require_kind,
+    require_place,
+    require_rng,
+    require_sensor,
+    require_shape,
+)
 from acutance.simulate.native_grid import NativeGrid
 from acutance.simulate.noise import Noise, noise_of_snr
 
@@ -199,6 +206,10 @@ def pair(
         require_sensor(one)
     require_shape(shape)
     drawn = require_rng(rng, "a landscape")
+    require_kind(PairGround, ground=ground)
+    require_kind(NativeGrid, native=native)
+    require_kind(Noise, noise_low=noise_low, noise_high=noise_high)
+    require_place(shift_px=shift_px)
     require_finite(ratio=ratio, gain=gain, offset=offset, dark=dark, bright=bright)
     _require_contrast_and_overlap(gain, dark, bright, shift_px, shape)
     quarters = _quarters(ratio)

@@ -14,7 +14,7 @@ from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ModelError
 from acutance.geometry.line import Orientation
 from acutance.optics.sensor import Sensor
-from acutance.simulate.limits import require_finite, require_sensor, require_shape
+from acutance.simulate.limits import require_finite, require_floats, require_sensor, require_shape
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.scene import Point, render_patches
 
@@ -172,13 +172,14 @@ def points(
     Raises
     ------
     ModelError
-        If there are no sources, one lies outside the image, their numbers differ, or `peak` is not
-        above 0.
+        If there are no sources, one lies outside the image, their numbers differ, a flux is not
+        finite, or `peak` is not above 0.
     OptionError
         If an argument is of the wrong kind.
     """
     require_sensor(sensor)
-    places = mirror_columns((12.0, 12.0)) if positions is None else np.asarray(positions, float)
+    given = mirror_columns((12.0, 12.0)) if positions is None else positions
+    places = require_floats("positions", given)
     if places.ndim != 2 or places.shape[0] == 0 or places.shape[1] != 2:
         raise ModelError(f"positions have shape {places.shape}, they have to be (n, 2): row, col")
     require_finite(peak=peak, background=background)
@@ -196,12 +197,14 @@ def points(
             "larger shape"
         )
     brightness = peak_per_flux(sensor)
-    light = np.asarray(peak / brightness if fluxes is None else fluxes, float)
+    light = require_floats("fluxes", peak / brightness if fluxes is None else fluxes)
     if light.shape not in ((), (places.shape[0],)):
         raise ModelError(
             f"{light.size} fluxes were given for {places.shape[0]} positions: give one for each"
         )
     light = np.broadcast_to(light, places.shape[:1]).copy()
+    if not np.all(np.isfinite(light)):
+        raise ModelError("a flux is not a finite number: give the light of each source")
     sources = [
         Point(row, col, float(flux))
         for (row, col), flux in zip(places.tolist(), light, strict=True)

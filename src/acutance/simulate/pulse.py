@@ -16,7 +16,7 @@ from acutance.geometry.line import Line, Orientation
 from acutance.optics.sensor import Sensor
 from acutance.simulate.edge import line_through_centre
 from acutance.simulate.ground import GroundNoise
-from acutance.simulate.limits import require_finite, require_sensor, require_shape
+from acutance.simulate.limits import require_finite, require_kind, require_sensor, require_shape
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.resample import Regrid, render_regridded
 from acutance.simulate.scene import Patch, render_patches
@@ -243,8 +243,10 @@ def pulse(
     require_sensor(sensor)
     behind = dark if right_dark is None else right_dark
     require_shape(shape)
+    require_kind(Regrid, regrid=regrid)
+    require_kind(GroundNoise, ground_noise=ground_noise)
     require_finite(dark=dark, bright=bright, right_dark=behind, width_px=width_px)
-    require_finite(length_px=length_px or 0.0, offset_px=offset_px)
+    require_finite(length_px=0.0 if length_px is None else length_px, offset_px=offset_px)
     _require_pulse(width_px, length_px, (dark, bright, behind))
     line = line_through_centre(shape, angle_deg, orientation).moved(offset_px, 0.0)
     _require_inside(line, width_px, shape)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -80,7 +80,7 @@ class Regrid:
     Parameters
     ----------
     shift_row_px, shift_col_px : float, optional
-        Shift in old pixels.
+        Shift in old pixels; a target goes along, so only fractions of a pixel change its image.
     scale : float, optional
         Size of the new pixels in old ones, 0.5 to 2. At 1 all new pixels have the same phase
         and the resampled system is known exactly; otherwise the phases vary, the transfer is
@@ -172,6 +172,9 @@ def render_regridded(
         Added before the resampling.
     rng : numpy.random.Generator or None
     """
+    # The target is placed by the shift: whole pixels of it would only widen the old image.
+    row, col = (one - round(one) for one in (regrid.shift_row_px, regrid.shift_col_px))
+    regrid = replace(regrid, shift_row_px=row, shift_col_px=col)
     half_new_px = regrid.system(sensor).profile(line.normal_deg).half_px * regrid.scale
     moved_px = half_new_px - sensor.profile(line.normal_deg).half_px
     source = regrid.source_line(line, shape, moved_px)

@@ -67,6 +67,8 @@ class Patch:
 
     def __post_init__(self) -> None:
         require(self, above=True, width_px=self.width_px, height_px=self.height_px)
+        require(self, -math.inf, row=self.row, col=self.col, turn_deg=self.turn_deg)
+        require(self, -math.inf, contrast=self.contrast)
 
     def spectrum(self, u: ArrayLike, v: ArrayLike) -> Floats:
         """Fourier transform of the patch about its own centre (real), at cycles per pixel."""
@@ -102,6 +104,8 @@ class Strip:
 
     def __post_init__(self) -> None:
         require(self, above=True, width_px=self.width_px)
+        require(self, -math.inf, row=self.row, col=self.col, normal_deg=self.normal_deg)
+        require(self, -math.inf, contrast=self.contrast)
 
 
 def render_strip(sensor: Sensor, strip: Strip, shape: tuple[int, int]) -> Floats:
@@ -128,6 +132,9 @@ class Point:
     row: float
     col: float
     flux: float
+
+    def __post_init__(self) -> None:
+        require(self, -math.inf, row=self.row, col=self.col, flux=self.flux)
 
     def spectrum(self, u: ArrayLike, v: ArrayLike) -> Floats:
         """Fourier transform about its own place: the flux at every frequency."""

@@ -18,7 +18,14 @@ from acutance.geometry.line import Line
 from acutance.optics.sensor import Sensor
 from acutance.simulate.bars import BarsTruth
 from acutance.simulate.edge import Truth
-from acutance.simulate.limits import require_finite, require_rng, require_sensor, require_shape
+from acutance.simulate.limits import (
+    require_finite,
+    require_numbers,
+    require_place,
+    require_rng,
+    require_sensor,
+    require_shape,
+)
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.points import PointsTruth
 from acutance.simulate.pulse import PulseTruth
@@ -150,6 +157,8 @@ def checkerboard(
     require_shape(shape)
     if centre is None:
         centre = (0.5 * (shape[0] - 1), 0.5 * (shape[1] - 1))
+    require_place(centre=centre)
+    require_numbers(tile_px=tile_px, turn_deg=turn_deg)
     require_texture(texture_std)
     require_finite(dark=dark, bright=bright, ground=ground)
     _require_room(shape, tile_px, turn_deg, centre)

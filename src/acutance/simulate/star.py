@@ -13,11 +13,11 @@ from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ModelError
-from acutance.geometry.angles import direction_difference
+from acutance.geometry.angles import direction_difference, wrap_direction
 from acutance.optics.block import require, require_count
 from acutance.optics.sensor import Sensor
 from acutance.simulate.ground import MAX_SUBPIXELS, render_raster
-from acutance.simulate.limits import require_finite, require_sensor, require_shape
+from acutance.simulate.limits import require_finite, require_place, require_sensor, require_shape
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.scene import stamp
 
@@ -63,6 +63,7 @@ class Star:
 
     def __post_init__(self) -> None:
         require_count(self, 1000, cycles=self.cycles)
+        require(self, -math.inf, row=self.row, col=self.col, start_deg=self.start_deg)
         require(self, above=True, radius_px=self.radius_px)
         require(self, 0.0, 2.5, above=True, finest_cpp=self.finest_cpp)
         require(self, 0.0, 360.0, above=True, sweep_deg=self.sweep_deg)
@@ -91,19 +92,31 @@ class Star:
         """Modulation (-1 to 1) and coverage (0 to 1) at places, means over about `fine_px`."""
         y, x = rows - self.row, cols - self.col
         radius = np.hypot(x, y)
-        turn = np.arctan2(y, x) - math.radians(self.start_deg)
-        phase = self.cycles * turn
-        wave = np.sin(phase)
+        half = 0.5 * self.sweep_deg
+        turn_deg = wrap_direction(np.degrees(np.arctan2(y, x)) - self.start_deg - half) + half
+        fine_deg = np.degrees(np.minimum(fine_px / np.maximum(radius, 1e-9), 2 * math.pi))
+        first, last = turn_deg - 0.5 * fine_deg, turn_deg + 0.5 * fine_deg
+        if self.sweep_deg < 360:
+            first, last = np.maximum(first, 0.0), np.minimum(last, self.sweep_deg)
         if self.wave == "square":
-            # Distance to the nearest border of a spoke, in fine squares.
-            wave = np.clip(2 * wave * radius / (self.cycles * fine_px), -1.0, 1.0)
+            wave = self._mean_square(first, last)
+        else:
+            wave = np.sin(np.radians(self.cycles * turn_deg))
         wave = wave * np.clip(0.5 + (radius - self.inner_px) / fine_px, 0.0, 1.0)
         cover = np.clip(0.5 + (self.radius_px - radius) / fine_px, 0.0, 1.0)
-        if self.sweep_deg < 360:
-            half = 0.5 * self.sweep_deg
-            inside = np.radians(half - direction_difference(np.degrees(turn), half))
-            cover = cover * np.clip(0.5 + inside * radius / fine_px, 0.0, 1.0)
-        return wave, cover
+        return wave, cover * np.clip((last - first) / fine_deg, 0.0, 1.0)
+
+    def _mean_square(self, first_deg: Floats, last_deg: Floats) -> Floats:
+        """Mean of the square wave between two angles from its beginning.
+
+        At a border of a fan it is that of the part inside: a spoke ends there, and the next one
+        would be of the other sign.
+        """
+        # The integral of a square wave is a triangle wave.
+        first, last = (
+            direction_difference(self.cycles * one, 0.0) for one in (first_deg, last_deg)
+        )
+        return np.asarray((last - first) / (self.cycles * np.maximum(last_deg - first_deg, 1e-9)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,7 +192,7 @@ def add_star(
 
     It is drawn on a grid of 1/10 px. Against 1/30 px no pixel changes by more than 1e-3 of the
     contrast for a sine (at the rim; 1e-4 at the grey centre, nothing between), 2e-3 for a square
-    wave (at the rim; 1e-3 elsewhere).
+    wave (where borders follow the rim or a diagonal of the grid; 1e-3 elsewhere).
 
     Parameters
     ----------
@@ -193,8 +206,9 @@ def add_star(
     Raises
     ------
     ModelError
-        If the star is too large to be drawn.
+        If the star is too large to be drawn, or a level is not finite.
     """
+    require_finite(mean=mean, amplitude=amplitude)
     side = 2 * (math.ceil(star.radius_px) + ROOM_PX)
     if (side * SUBPIXELS) ** 2 > MAX_SUBPIXELS:
         raise ModelError(
@@ -270,9 +284,13 @@ def star(
     """
     require_sensor(sensor)
     require_shape(shape)
+    middle = (0.5 * (shape[0] - 1), 0.5 * (shape[1] - 1))
+    centre = middle if centre is None else centre
+    require_place(centre=centre)
     require_finite(dark=dark, bright=bright, start_deg=start_deg)
-    if centre is None:
-        centre = (0.5 * (shape[0] - 1), 0.5 * (shape[1] - 1))
+    mean = 0.5 * (dark + bright)
+    around = mean if ground is None else ground
+    require_finite(ground=around)
     target = Star(*centre, radius_px, cycles, wave, start_deg, sweep_deg, finest_cpp)
     room = min(*centre, shape[0] - 1 - centre[0], shape[1] - 1 - centre[1])
     if not dark < bright or radius_px > room:
@@ -280,10 +298,8 @@ def star(
             f"a star of {radius_px:g} px from {dark:g} to {bright:g} was requested: dark has to be "
             f"the lower one, and the image has room for {room:.1f} px"
         )
-    middle = 0.5 * (dark + bright)
-    around = middle if ground is None else ground
     image = np.full(shape, float(around))
-    add_star(image, sensor, target, mean=middle - around, amplitude=0.5 * (bright - dark))
+    add_star(image, sensor, target, mean=mean - around, amplitude=0.5 * (bright - dark))
     added = noise_of_snr(bright - dark, snr, noise, min(dark, around))
     truth = StarTruth(sensor, target, dark, bright, around, added)
     return (image if added is None else added.added_to(image, rng)), truth

@@ -47,6 +47,8 @@ class EdgeTarps:
 
     def __post_init__(self) -> None:
         require(self, 8.0, side_px=self.side_px)
+        require(self, -math.inf, row=self.row, col=self.col, normal_deg=self.normal_deg)
+        require(self, -math.inf, dark=self.dark, bright=self.bright)
 
 
 @dataclass(frozen=True)
@@ -76,6 +78,8 @@ class PulseTarp:
 
     def __post_init__(self) -> None:
         require(self, above=True, width_px=self.width_px, length_px=self.length_px)
+        require(self, -math.inf, row=self.row, col=self.col, normal_deg=self.normal_deg)
+        require(self, -math.inf, level=self.level)
 
 
 def tarp_rows(

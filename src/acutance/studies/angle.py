@@ -17,6 +17,7 @@ from acutance.studies.result import Finding, StudyResult
 from acutance.studies.table import Table
 from acutance.studies.targets import measure_published_pulse
 from acutance.studies.trials import Execution, Record, run_trials
+from acutance.targets.options import require_types
 from acutance.targets.straight import measure_pulse
 from acutance.targets.straight.published.local_polynomial import window_gain
 
@@ -54,6 +55,7 @@ class AngleOptions:
     pulse_dn: tuple[float, float] = (100.0, 1200.0)
 
     def __post_init__(self) -> None:
+        require_types(self)
         angles_known = self.angles_deg and all(0 < angle <= 30 for angle in self.angles_deg)
         if not angles_known or self.places < 1:
             least, most = min(self.angles_deg, default=0.0), max(self.angles_deg, default=0.0)

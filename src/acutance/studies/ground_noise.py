@@ -15,6 +15,7 @@ from acutance.studies.scatter import error_columns, find_minimum, find_refusal
 from acutance.studies.table import Cell, Table
 from acutance.studies.targets import ESTIMATOR_WORDS, ESTIMATORS, Estimator, measure_both_pulses
 from acutance.studies.trials import Execution, Record, run_trials
+from acutance.targets.options import require_types
 
 __all__ = ["GroundNoiseOptions", "study_ground_noise"]
 
@@ -60,6 +61,7 @@ class GroundNoiseOptions:
     shape: tuple[int, int] = (60, 40)
 
     def __post_init__(self) -> None:
+        require_types(self)
         if not self.levels_dn or self.runs < 1:
             raise OptionError(
                 f"levels_dn is {self.levels_dn} and runs is {self.runs}: there have to be a "

@@ -30,6 +30,7 @@ from acutance.studies.mirror_layout import (
     lay_out_mirrors,
 )
 from acutance.studies.trials import Execution, Record, run_trials
+from acutance.targets.options import require_types
 from acutance.targets.points import measure_points
 
 __all__ = ["MirrorPlan", "MirrorPlanOptions", "place_errors_px", "plan_mirrors"]
@@ -96,13 +97,10 @@ class MirrorPlanOptions:
     draws: int = 20
 
     def __post_init__(self) -> None:
+        require_types(self)
         if self.sensor.gsd_m is None:
             raise OptionError(
                 "mirrors need a ground sampling distance: give the sensor's GSD (gsd_m, --gsd)"
-            )
-        if self.arrangement not in ("columns", "square"):
-            raise OptionError(
-                f"arrangement is {self.arrangement!r}: it has to be 'columns' or 'square'"
             )
         bounds = {
             "count": (self.count, 1, 400),

@@ -18,6 +18,7 @@ from acutance.studies.bound import Design, equivalent_blur, free_bound, shape_bo
 from acutance.studies.result import Finding, StudyResult
 from acutance.studies.table import Cell, Table
 from acutance.studies.trials import Execution, Record, run_trials
+from acutance.targets.options import require_types
 from acutance.targets.straight import measure_edge, measure_pulse
 
 __all__ = ["MAX_WIDTH_PX", "MIN_WIDTH_PX", "PLAN_METRICS", "PlanOptions", "plan_target"]
@@ -29,6 +30,8 @@ _ROWS_SHARES = (0.5, 1.0, 1.5, 2.0)
 
 MIN_WIDTH_PX, MAX_WIDTH_PX = 0.5, 20.0
 _MIN_ROWS, _MAX_ROWS = 20, 2000
+
+_RANGES = {"snr": (1.0, 1e6), "window_px": (0.1, 1000.0)}
 
 _ROOM_PX = 10.0
 """Plateau beyond the target on either side, or three times the FWHM if that is more."""
@@ -49,7 +52,7 @@ class PlanOptions:
     target : {"edge", "pulse"}
     sensor : Sensor
     snr : float
-        Height of the target over the standard deviation of the noise.
+        Height of the target over the standard deviation of the noise, 1 to a million.
     rows : tuple of int
         Image rows that cross the target, 20 to 2000. A single number is varied from half to twice.
     angles_deg : tuple of float
@@ -59,7 +62,7 @@ class PlanOptions:
     draws : int
         Simulated images a design, 2 or more; 0 leaves the simulation out.
     window_px : float
-        Of the bound of a free LSF.
+        Of the bound of a free LSF, 0.1 to 1000.
     accuracy : float, optional
         Wanted standard deviation of the MTF at Nyquist: answered by a number of rows.
     sensor_name : str, optional
@@ -78,11 +81,11 @@ class PlanOptions:
     sensor_name: str = ""
 
     def __post_init__(self) -> None:
-        if self.target not in ("edge", "pulse"):
-            raise OptionError(f'the target is {self.target!r}: it has to be "edge" or "pulse"')
-        for name, value in (("snr", self.snr), ("window_px", self.window_px)):
-            if not value > 0:
-                raise OptionError(f"{name} is {value:g}, it has to be above 0")
+        require_types(self)
+        for name, (low, high) in _RANGES.items():
+            value = getattr(self, name)
+            if not low <= value <= high:
+                raise OptionError(f"{name} is {value:g}: give {low:g} to {high:g}")
         if self.draws < 0:
             raise OptionError(
                 f"draws is {self.draws}: give 2 or more simulated images, or 0 for the bounds alone"
@@ -111,8 +114,8 @@ class PlanOptions:
                 f"{MIN_WIDTH_PX:g} to {MAX_WIDTH_PX:g} px wide, 3 is best; check the width and the "
                 "GSD"
             )
-        if self.accuracy is not None and not self.accuracy > 0:
-            raise OptionError(f"accuracy is {self.accuracy:g}: it has to be above 0")
+        if self.accuracy is not None and not 0 < self.accuracy < math.inf:
+            raise OptionError(f"accuracy is {self.accuracy:g}: it has to be finite and above 0")
 
 
 def _listed(numbers: Sequence[float]) -> str:

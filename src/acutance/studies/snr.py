@@ -22,6 +22,7 @@ from acutance.studies.targets import (
     measure_both_pulses,
 )
 from acutance.studies.trials import Execution, Record, run_trials
+from acutance.targets.options import require_types
 
 __all__ = ["SnrOptions", "SnrTrial", "study_snr"]
 
@@ -66,6 +67,7 @@ class SnrOptions:
     pulse_dn: tuple[float, float] = (100.0, 1200.0)
 
     def __post_init__(self) -> None:
+        require_types(self)
         if not self.noise_dn or min(self.noise_dn) <= 0 or self.draws < 1:
             raise OptionError(
                 f"there are {len(self.noise_dn)} levels of noise, the least "

@@ -16,6 +16,7 @@ from acutance.studies.result import Finding, StudyResult
 from acutance.studies.table import Table
 from acutance.studies.targets import ESTIMATORS, measure_published_pulse
 from acutance.studies.trials import Execution, Record, run_trials
+from acutance.targets.options import require_types
 from acutance.targets.straight import measure_pulse
 from acutance.targets.straight.pulse_spectrum import width_error_gain
 
@@ -77,6 +78,7 @@ class WidthOptions:
     pulse_dn: tuple[float, float] = (100.0, 1200.0)
 
     def __post_init__(self) -> None:
+        require_types(self)
         if not self.widths_px or min(*self.widths_px, self.nominal_px) <= 0:
             raise OptionError(
                 f"widths_px are {self.widths_px} and nominal_px is {self.nominal_px:g}: there has "

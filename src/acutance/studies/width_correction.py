@@ -17,6 +17,7 @@ from acutance.studies.table import Cell, Table
 from acutance.studies.targets import ESTIMATORS, measure_published_pulse
 from acutance.studies.trials import Execution, Record, run_trials
 from acutance.studies.width import WIDTH_FREQ_CPP
+from acutance.targets.options import require_types
 from acutance.targets.straight import measure_pulse
 from acutance.targets.straight.pulse_spectrum import width_error_gain
 from acutance.targets.straight.pulse_width import smoothest_width
@@ -76,6 +77,7 @@ class WidthCorrectionOptions:
     shape: tuple[int, int] = (40, 36)
 
     def __post_init__(self) -> None:
+        require_types(self)
         if not self.cases or self.draws < 1:
             raise OptionError(
                 f"there are {len(self.cases)} cases and {self.draws} draws: at least one of each"

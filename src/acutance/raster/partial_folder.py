@@ -1,0 +1,72 @@
+"""The hidden folder in which an image grows until it gets its name, and those of killed runs."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+__all__ = ["partial_folder"]
+
+
+@contextmanager
+def partial_folder(target: Path) -> Iterator[str]:
+    """A folder beside a file that is to be written, which goes with the end of the block.
+
+    A process that is killed leaves its folder behind: the next one that writes beside it removes
+    it.
+
+    Parameters
+    ----------
+    target : Path
+        The file; on the same file system, a finished one is renamed at once.
+
+    Yields
+    ------
+    str
+    """
+    _remove_left_behind(target.parent)
+    prefix = f".acutance-{_system()}-{os.getpid()}-"
+    with TemporaryDirectory(prefix=prefix, dir=target.parent) as folder:
+        yield folder
+
+
+def _system() -> str:
+    """Where the number of a process means the same process: the host, and the container on it."""
+    namespace = Path("/proc/self/ns/pid")
+    number = namespace.stat().st_ino if namespace.exists() else 0
+    host = os.uname().nodename if os.name == "posix" else ""
+    return f"{zlib.crc32(f'{host} {number}'.encode()):08x}"
+
+
+def _remove_left_behind(folder: Path) -> None:
+    """Remove what processes of this system and user left that are no more."""
+    if os.name != "posix":
+        # Elsewhere no signal asks for a process without an effect on it.
+        return
+    pattern = re.compile(rf"\.acutance-{_system()}-(\d+)-\w+")
+    # What cannot be listed, or goes meanwhile, is no reason not to write.
+    with suppress(OSError), os.scandir(folder) as entries:
+        for entry in entries:
+            named = pattern.fullmatch(entry.name)
+            if named is None or not entry.is_dir(follow_symlinks=False):
+                continue
+            own = entry.stat(follow_symlinks=False).st_uid == os.getuid()
+            if own and not _is_running(int(named[1])):
+                shutil.rmtree(entry.path, ignore_errors=True)
+
+
+def _is_running(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except (OverflowError, PermissionError):
+        # Not the number of a process, or that of another user's.
+        return True
+    return True
