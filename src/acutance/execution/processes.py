@@ -13,7 +13,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from itertools import islice
 from multiprocessing import get_context, parent_process
@@ -147,16 +147,17 @@ def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
     """
     # Fresh processes read the number of threads when they load the libraries.
     context = get_context("spawn")
-    # Its end is the sign to stop: nothing that a killed process could hold locked.
-    heard, held = context.Pipe(duplex=False)
-    with (
-        heard,
-        held,
-        _environment_of_processes(),
-        ProcessPoolExecutor(
-            workers, mp_context=context, initializer=_obey_parent, initargs=(heard,)
-        ) as pool,
-    ):
+    with ExitStack() as stack:
+        # What a pool is made of is loaded only now: an interrupt in an import may be lost.
+        with _interrupts_held_back():
+            # Its end is the sign to stop: nothing that a killed process could hold locked.
+            heard, held = map(stack.enter_context, context.Pipe(duplex=False))
+            stack.enter_context(_environment_of_processes())
+            pool = stack.enter_context(
+                ProcessPoolExecutor(
+                    workers, mp_context=context, initializer=_obey_parent, initargs=(heard,)
+                )
+            )
         try:
             yield pool
         except BaseException as error:
