@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -127,10 +128,7 @@ def parse_reference(text: str | None) -> ReferenceLike:
     """
     if text is None:
         return None
-    ending = Path(text).suffix.lower()
-    if ending == ".toml":
-        return named_sensor(text)
-    if ending == ".json":
+    if Path(text).suffix.lower() == ".json":
         from acutance.targets.pair import measured_reference
 
         try:
@@ -138,10 +136,8 @@ def parse_reference(text: str | None) -> ReferenceLike:
         except (OSError, ValueError) as error:
             raise OptionError(f"--reference {text} cannot be read ({error})") from error
         return measured_reference(document, f"--reference {text}")
-    try:
+    with suppress(ValueError):
         return float(text)
-    except ValueError:
-        pass
     try:
         return named_sensor(text)
     except OptionError as error:
