@@ -260,7 +260,7 @@ def test_clipped_star_fails_by_name():
     assert "saturation" in _names(found.failed_checks)
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", range(3))
 def test_a_sine_star_taken_for_a_square_one_is_refused(seed):
     sensor = ac.Sensor([ac.optics.Gaussian(0.4), ac.optics.Detector()])
     image, _ = ac.simulate.star(sensor, snr=100, rng=np.random.default_rng(seed))
