@@ -67,7 +67,7 @@ def one_series(rows: Columns, metric: str) -> Series:
                 f"the measurements are of {len(found)} {name}s, {', '.join(found)}: select one "
                 f"({name}=..., --{name})"
             )
-    sizes = [gsd_words(pixel_side_m(rows)[mask]) for mask in by_gsd(rows)]
+    sizes = [gsd_words(pixel_side_m(rows, mask)) for mask in by_gsd(rows)]
     if len(sizes) > 1:
         raise OptionError(
             f"the measurements are of {len(sizes)} GSDs, {', '.join(sizes)}: select one, by "
@@ -88,7 +88,7 @@ def all_series(rows: Columns, metric: str) -> Iterator[Series]:
     for ours in _masks_by(rows, _ONE_OF):
         classes = by_gsd(rows, ours)
         for mask in classes:
-            size = gsd_words(pixel_side_m(rows)[mask]) if len(classes) > 1 else None
+            size = gsd_words(pixel_side_m(rows, mask)) if len(classes) > 1 else None
             yield _series(rows, metric, mask, size)
 
 
@@ -109,7 +109,7 @@ def unmeasured_directions(rows: Columns) -> Iterator[tuple[str, str]]:
         if 2 * len(across) == len(alone):
             continue
         for mask in alone:
-            size = gsd_words(pixel_side_m(rows)[mask]) if len(classes) > 1 else None
+            size = gsd_words(pixel_side_m(rows, mask)) if len(classes) > 1 else None
             measured = str(rows["orientation"][mask][0])
             other = "along" if measured == "across" else "across"
             yield _title(rows, mask, size, other), measured
@@ -131,7 +131,7 @@ def by_gsd(rows: Columns, mask: NDArray[np.bool_] | None = None) -> list[NDArray
     """
     ours = np.ones(len(rows), bool) if mask is None else mask
     label = np.full(len(rows), -1)
-    label[ours] = gsd_classes(pixel_side_m(rows)[ours])
+    label[ours] = gsd_classes(pixel_side_m(rows, ours))
     known = np.unique(label[ours & (label >= 0)]).tolist()
     if len(known) < 2:
         return [ours]
@@ -139,8 +139,8 @@ def by_gsd(rows: Columns, mask: NDArray[np.bool_] | None = None) -> list[NDArray
     return [one for one in masks if one.any()]
 
 
-def pixel_side_m(rows: Columns) -> Floats:
-    """GSD of every row along the axis of the image nearest to its direction, metres, (n,).
+def pixel_side_m(rows: Columns, mask: NDArray[np.bool_]) -> Floats:
+    """GSD of some rows along the axis of the image nearest to their directions, metres, (n,).
 
     That along the direction itself changes with the slope of the target where pixels are not
     square, and the sensor does not. It stands where the image's pixels are not known, or others
@@ -149,9 +149,11 @@ def pixel_side_m(rows: Columns) -> Floats:
     Parameters
     ----------
     rows : Columns
+    mask : (m,) bool array
+        Which n of the rows.
     """
-    row_m, col_m, measured = (rows[name] for name in ("gsd_row_m", "gsd_col_m", "gsd_m"))
-    side = np.where(rows["orientation"] == "along", row_m, col_m)
+    row_m, col_m, measured = (rows[name][mask] for name in ("gsd_row_m", "gsd_col_m", "gsd_m"))
+    side = np.where(rows["orientation"][mask] == "along", row_m, col_m)
     finer = measured < np.minimum(row_m, col_m) * (1 - SAME_GSD)
     coarser = measured > np.maximum(row_m, col_m) * (1 + SAME_GSD)
     return np.where(np.isnan(side) | finer | coarser, measured, side)
@@ -197,7 +199,7 @@ def _series(rows: Columns, metric: str, mask: NDArray[np.bool_], size: str | Non
     names = dict(zip(image.tolist(), rows["image"][mask].tolist(), strict=True))
     return Series(
         metric=metric, when=years_of(rows["acquired"][mask]), value=value, std=std,
-        systematic_std=systematic, image=image, gsd_m=pixel_side_m(rows)[mask],
+        systematic_std=systematic, image=image, gsd_m=pixel_side_m(rows, mask),
         image_names={number: name for number, name in names.items() if name is not None},
         name=_title(rows, mask, size, rows["orientation"][mask][0]),
         notes=(*_unnamed(rows, mask), *_mixed(rows, mask), *restored_notes(rows, mask)),

@@ -27,7 +27,6 @@ def with_gsd_bands(rows: Measurements) -> Measurements:
     classes = by_gsd(rows, np.array([one is None for one in band.tolist()], bool))
     if len(classes) < 2:
         return rows
-    side_m = pixel_side_m(rows)
     for mask in classes:
-        band[mask] = gsd_words(side_m[mask])
+        band[mask] = gsd_words(pixel_side_m(rows, mask))
     return replace(rows, columns={**rows.columns, "band": band})
