@@ -11,6 +11,7 @@ from typing import Any
 
 from sqlalchemy import Connection, select, update
 
+from acutance.archive.connection import in_chunks
 from acutance.archive.packing import unpacked
 from acutance.archive.tables import documents, measurements
 from acutance.errors import OptionError
@@ -18,12 +19,13 @@ from acutance.errors import OptionError
 __all__ = ["name_bands", "require_one_band", "unnamed_rows"]
 
 _MANY = 500
+"""Documents in one answer."""
 
 
 def unnamed_rows(connection: Connection, image_ids: Collection[int]) -> set[int]:
     """Images, among some, that have rows without the name of a band."""
     found: set[int] = set()
-    for some in _chunks(image_ids):
+    for some in in_chunks(image_ids):
         asked = select(measurements.c.image_id).distinct()
         asked = asked.where(measurements.c.image_id.in_(some), measurements.c.band.is_(None))
         found.update(connection.execute(asked).scalars())
@@ -62,7 +64,7 @@ def require_one_band(connection: Connection, images: Sequence[Mapping[str, Any]]
 def name_bands(connection: Connection, bands: Mapping[int, str]) -> None:
     """Name the band of all rows without one, by the numbers of images."""
     for band in dict.fromkeys(bands.values()):
-        for some in _chunks([number for number, one in bands.items() if one == band]):
+        for some in in_chunks([number for number, one in bands.items() if one == band]):
             named = update(measurements).values(band=band)
             named = named.where(measurements.c.band.is_(None), measurements.c.image_id.in_(some))
             connection.execute(named)
@@ -74,16 +76,10 @@ def _numbers_of_bands(
     """The image and the number of the band of all rows that have one."""
     columns = measurements.c.image_id, measurements.c.rejected_values, documents.c.document
     joined = measurements.outerjoin(documents)
-    for some in _chunks(image_ids):
+    for some in in_chunks(image_ids, _MANY):
         asked = select(*columns).select_from(joined).where(measurements.c.image_id.in_(some))
         for image_id, values, document in connection.execute(asked):
             stated = unpacked(document)["image"] if document is not None else values or {}
             number = str(stated.get("band", ""))
             if number.isdecimal():
                 yield image_id, int(number)
-
-
-def _chunks(ids: Collection[int]) -> Iterator[Sequence[int]]:
-    listed = list(ids)
-    for first in range(0, len(listed), _MANY):
-        yield listed[first : first + _MANY]

@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 import sqlite3
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
@@ -24,13 +24,18 @@ from sqlalchemy.pool import QueuePool
 from acutance.archive.failures import explained, is_passing
 from acutance.errors import ArchiveError
 
-__all__ = ["PATIENCE_S", "Database", "file_of", "insert_missing", "is_there", "open_database"]
+__all__ = [
+    "PATIENCE_S", "Database", "file_of", "in_chunks", "insert_missing", "is_there", "open_database",
+]  # fmt: skip
 
 Done = TypeVar("Done")
+Value = TypeVar("Value")
 
 PATIENCE_S = 20.0
 """How long a busy file, or a server that does not answer, is waited for."""
 
+_MOST_VALUES = 2000
+"""In one question: databases take some ten thousand."""
 _PAUSE_S = 0.1
 _MAKING_S = 5.0
 """A new file is empty until its tables are made."""
@@ -153,6 +158,20 @@ def open_database(place: str | os.PathLike[str], *, read_only: bool = False) -> 
             raise ArchiveError(f"archive {text} names no file: write sqlite:///FILE, or the file")
         return _file_database(Path(url.database), read_only)
     return _server_database(url, read_only)
+
+
+def in_chunks(values: Iterable[Value], most: int = _MOST_VALUES) -> Iterator[list[Value]]:
+    """Values in lists that are short enough for one question.
+
+    Parameters
+    ----------
+    values : iterable
+    most : int, optional
+        Fewer where every answer is large.
+    """
+    every = list(values)
+    for first in range(0, len(every), most):
+        yield every[first : first + most]
 
 
 def insert_missing(

@@ -15,7 +15,7 @@ from typing import Any, Final
 
 from sqlalchemy import Connection, select
 
-from acutance.archive.connection import Database
+from acutance.archive.connection import Database, in_chunks
 from acutance.archive.entry import ImageEntry
 from acutance.archive.rows import image_row
 from acutance.archive.tables import images, measurements
@@ -32,8 +32,6 @@ _STATED: Final = (
 )  # fmt: skip
 """What callers state of an image; the GSD is that of the measurement."""
 _GSD: Final = ("gsd_row_m", "gsd_col_m")
-_CHUNK: Final = 2000
-"""Keys of one question: databases take some ten thousand values."""
 
 
 def contradictions(database: Database, stated: Mapping[str, ImageEntry]) -> dict[str, str]:
@@ -51,7 +49,7 @@ def contradictions(database: Database, stated: Mapping[str, ImageEntry]) -> dict
         A sentence each, with both; keys without a contradiction are left out.
     """
     found: dict[str, str] = {}
-    for row, differing in _contradicting(database, stated):
+    for row, differing in _contradicting(database, stated, _differing):
         found[row["key"]] = (
             f"the archive has this measurement already, as number {row['id']}, with "
             f"{in_words(differing)}, and keeps a measurement once: {_advice(row)}"
@@ -81,7 +79,7 @@ def kept_otherwise(
         By image, and by the name of what is known: what is kept, and what is known.
     """
     found: dict[str, Differing] = {}
-    for row, differing in _contradicting(database, stated):
+    for row, differing in _contradicting(database, stated, _differing):
         image = _name(row)
         found[image] = {**found.get(image, {}), **differing}
     for row, differing in _contradicting(database, said, _new):
@@ -103,17 +101,15 @@ def in_words(differing: Differing) -> str:
 
 
 def _contradicting(
-    database: Database, stated: Mapping[str, ImageEntry], compare: Comparison | None = None
+    database: Database, stated: Mapping[str, ImageEntry], compare: Comparison
 ) -> Iterator[tuple[Mapping[str, Any], Differing]]:
     """Rows of measurements and their images, with what is stated otherwise."""
-    keys = list(stated)
     # All rows of an image of a batch have one entry: it is made a row once.
     entries = {id(one): one for one in stated.values()}
     rows = {own: image_row(one) for own, one in entries.items()}
-    for at in range(0, len(keys), _CHUNK):
-        some = keys[at : at + _CHUNK]
+    for some in in_chunks(stated):
         for row in database.read(partial(_kept, keys=some)):
-            differing = dict((compare or _differing)(row, rows[id(stated[row["key"]])]))
+            differing = dict(compare(row, rows[id(stated[row["key"]])]))
             if differing:
                 yield row, differing
 

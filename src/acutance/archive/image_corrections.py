@@ -20,7 +20,7 @@ from typing import Any, Final
 from sqlalchemy import Connection, Select, func, select
 
 from acutance.archive.band_corrections import name_bands, require_one_band, unnamed_rows
-from acutance.archive.connection import Database
+from acutance.archive.connection import Database, in_chunks
 from acutance.archive.correction_notes import BAND, next_moment, with_notes, write_rows
 from acutance.archive.counted import counted
 from acutance.archive.dates import When, as_utc
@@ -41,7 +41,6 @@ __all__ = [
 CORRECTED: Final = ("sensor", "level", BAND, "acquired", "gsd_m", *ANGLES)
 """What of an image can be corrected."""
 _SAME_GSD: Final = 1e-6
-_CHUNK: Final = 2000
 """Images of one question to the database."""
 
 
@@ -278,23 +277,18 @@ def _kept_rows(
     """All rows of images, in the order of their numbers; locked, no other process writes them."""
     contents = [key for key in keys if isinstance(key, str)]
     ids = [key for key in keys if not isinstance(key, str)]
-    asked = [select(images).where(images.c.content.in_(some)) for some in _chunks(contents)]
-    asked += [select(images).where(images.c.id.in_(some)) for some in _chunks(ids)]
+    asked = [select(images).where(images.c.content.in_(some)) for some in in_chunks(contents)]
+    asked += [select(images).where(images.c.id.in_(some)) for some in in_chunks(ids)]
     if lock:
         asked = [one.with_for_update(key_share=True) for one in asked]
     found = [dict(row) for one in asked for row in connection.execute(one).mappings()]
     return sorted(found, key=itemgetter("id"))
 
 
-def _chunks(items: Sequence[Any]) -> Iterator[Sequence[Any]]:
-    for first in range(0, len(items), _CHUNK):
-        yield items[first : first + _CHUNK]
-
-
 def _counts(connection: Connection, ids: Sequence[int]) -> Counter[tuple[int, bool]]:
     """Rows by image, and by whether they are measurements; others are rejections."""
     found: Counter[tuple[int, bool]] = Counter()
-    for some in _chunks(ids):
+    for some in in_chunks(ids):
         own, verdict = measurements.c.image_id, measurements.c.verdict
         asked = select(own, verdict, func.count()).where(own.in_(some)).group_by(own, verdict)
         for number, word, count in connection.execute(asked):
@@ -318,7 +312,7 @@ def _other_gsd(
 ) -> Counter[int]:
     """Directions with numbers in metres by another GSD than the corrected one, by image."""
     found: Counter[int] = Counter()
-    for some in _chunks([number for number, sides in after.items() if sides is not None]):
+    for some in in_chunks([number for number, sides in after.items() if sides is not None]):
         for number, gsd_m, count in connection.execute(_gsds_of(some)):
             sides = after[number] or (gsd_m, gsd_m)
             # A direction between the axes has a GSD between those of rows and columns.

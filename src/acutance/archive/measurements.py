@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from sqlalchemy import Column, ColumnElement, Connection, Select, select
 
 from acutance.archive.columns import Columns
-from acutance.archive.connection import Database
+from acutance.archive.connection import Database, in_chunks
 from acutance.archive.counted import counted
 from acutance.archive.packing import unpacked
 from acutance.archive.restored_images import RESTORED_COLUMN
@@ -200,8 +200,7 @@ def read_records(database: Database, ids: Sequence[int]) -> list[Record]:
         If there is no measurement of a number.
     """
     stored: dict[int, bytes] = {}
-    for first in range(0, len(ids), _MANY):
-        some = ids[first : first + _MANY]
+    for some in in_chunks(ids, _MANY):
         asked = select(documents).where(documents.c.measurement_id.in_(some))
         stored |= database.read(partial(_by_number, asked=asked))
     missing = [number for number in ids if number not in stored]

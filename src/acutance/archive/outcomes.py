@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from sqlalchemy import Connection, Select, select
 
-from acutance.archive.connection import Database
+from acutance.archive.connection import Database, in_chunks
 from acutance.archive.tables import VERDICTS, images, measurements
 
 __all__ = ["Outcome", "kept_outcomes"]
@@ -56,7 +56,6 @@ def kept_outcomes(database: Database, contents: Iterable[str]) -> dict[str, Outc
         If the archive cannot be read.
     """
     found: dict[str, Outcome] = {}
-    wanted = list(contents)
     columns = (
         measurements.c.key,
         images.c.content,
@@ -66,8 +65,7 @@ def kept_outcomes(database: Database, contents: Iterable[str]) -> dict[str, Outc
         measurements.c.reason,
         images.c.gsd_row_m,
     )
-    for first in range(0, len(wanted), _MANY):
-        some = wanted[first : first + _MANY]
+    for some in in_chunks(contents, _MANY):
         asked = select(*columns).join(images).where(images.c.content.in_(some))
         for key, content, verdict, stage, values, reason, gsd_m in database.read(
             partial(_rows, asked=asked)

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
-from typing import Any, Final
+from typing import Any
 
 from sqlalchemy import Connection, Row, delete, select
 
-from acutance.archive.connection import Database
+from acutance.archive.connection import Database, in_chunks
 from acutance.archive.named_images import ImageKey, named_images
 from acutance.archive.tables import images, measurements
 
 __all__ = ["earlier_contents", "remove_images", "remove_rejections"]
-
-_CHUNK: Final = 2000
-"""Keys of one question: databases take some ten thousand values."""
 
 
 def remove_rejections(database: Database, keys: Iterable[str]) -> int:
@@ -32,9 +29,8 @@ def remove_rejections(database: Database, keys: Iterable[str]) -> int:
     ArchiveError
         If the archive cannot be written.
     """
-    wanted, removed = list(keys), 0
-    for at in range(0, len(wanted), _CHUNK):
-        some = wanted[at : at + _CHUNK]
+    removed = 0
+    for some in in_chunks(keys):
         # Mostly there are none: other writers are not kept waiting to find that out.
         if database.read(partial(_rejections, keys=some)):
             removed += database.write(partial(_remove, keys=some))
@@ -66,10 +62,10 @@ def earlier_contents(database: Database, now: Mapping[str, str]) -> dict[str, li
         By path the SHA-256 of the file as it is.
     """
     found: dict[str, list[str]] = {}
-    paths, contents = list(now), set(now.values())
-    for at in range(0, len(paths), _CHUNK):
+    contents = set(now.values())
+    for some in in_chunks(now):
         asked = select(images.c.path, images.c.content).where(
-            images.c.path.in_(paths[at : at + _CHUNK]), images.c.content.is_not(None)
+            images.c.path.in_(some), images.c.content.is_not(None)
         )
         for path, content in database.read(partial(_pairs, asked=asked.distinct())):
             # A copy that took the name of another of these files is no earlier content.
@@ -108,8 +104,7 @@ def remove_images(database: Database, names: Sequence[str], *, dry_run: bool = F
 
 def _remove_images(connection: Connection, keys: Sequence[ImageKey], dry_run: bool) -> int:
     count = 0
-    for at in range(0, len(keys), _CHUNK):
-        some = keys[at : at + _CHUNK]
+    for some in in_chunks(keys):
         contents = [key for key in some if isinstance(key, str)]
         numbers = [key for key in some if not isinstance(key, str)]
         wanted = images.c.content.in_(contents) | images.c.id.in_(numbers)
