@@ -20,6 +20,7 @@ __all__ = [
     "parse_band",
     "parse_grid",
     "parse_limits",
+    "parse_numbers",
     "parse_pair",
     "parse_share",
     "parse_stated",
@@ -91,6 +92,20 @@ def numbers_of(text: str, separator: str = ",") -> list[float]:
         return [float(part) for part in re.split(separator, text)]
     except ValueError:
         return []
+
+
+def parse_numbers(option: str, text: str) -> tuple[float, ...]:
+    """Numbers with commas between, one or more.
+
+    Raises
+    ------
+    OptionError
+        If a part is no number.
+    """
+    numbers = tuple(numbers_of(text))
+    if not numbers:
+        raise OptionError(f"{option} {text}: write numbers with commas, as in 20,40")
+    return numbers
 
 
 def parse_pair(option: str, text: str, words: str) -> tuple[float, float]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from acutance.cli.choices import numbers_of
+from acutance.cli.choices import parse_numbers
 from acutance.cli.option_groups import with_groups
 from acutance.cli.options import JsonOption
 from acutance.cli.output import check_optional
@@ -139,7 +139,7 @@ def _plan(
     options = PlanOptions(
         target=target, sensor=system, snr=_snr(design.snr, design.contrast, design.noise),
         rows=_whole_numbers("--rows", design.rows),
-        angles_deg=_numbers("--angle", design.angle),
+        angles_deg=parse_numbers("--angle", design.angle),
         widths_px=_widths(width_px, width_m, system, design), draws=design.draws,
         accuracy=design.accuracy, sensor_name=Path(design.sensor).stem,
     )  # fmt: skip
@@ -173,11 +173,11 @@ def _widths(
     from acutance.studies.plan import MAX_WIDTH_PX, MIN_WIDTH_PX
 
     if width_m is None:
-        return _numbers("--width-px", width_px or "3")
-    gsd_m = sensor.gsd_along_normal_m(_numbers("--angle", design.angle)[0])
+        return parse_numbers("--width-px", width_px or "3")
+    gsd_m = sensor.gsd_along_normal_m(parse_numbers("--angle", design.angle)[0])
     if gsd_m is None:
         raise OptionError(f"--width-m {width_m} needs the ground sampling distance: add --gsd")
-    widths_px = tuple(width / gsd_m for width in _numbers("--width-m", width_m))
+    widths_px = tuple(width / gsd_m for width in parse_numbers("--width-m", width_m))
     if not all(MIN_WIDTH_PX <= width <= MAX_WIDTH_PX for width in widths_px):
         whose = f"that of {design.sensor}; --gsd is another" if design.gsd is None else "--gsd"
         found = ", ".join(f"{width:.4g}" for width in widths_px)
@@ -188,15 +188,8 @@ def _widths(
     return widths_px
 
 
-def _numbers(option: str, text: str) -> tuple[float, ...]:
-    numbers = tuple(numbers_of(text))
-    if not numbers:
-        raise OptionError(f"{option} {text}: write numbers with commas, as in 20,40")
-    return numbers
-
-
 def _whole_numbers(option: str, text: str) -> tuple[int, ...]:
-    numbers = _numbers(option, text)
+    numbers = parse_numbers(option, text)
     if not all(number.is_integer() for number in numbers):
         raise OptionError(f"{option} {text}: write whole numbers with commas, as in 20,40")
     return tuple(int(number) for number in numbers)

@@ -16,6 +16,7 @@ from acutance.cli.plan import (
     plan_edge,
     plan_pulse,
 )
+from acutance.cli.plan_trend import TREND_EXAMPLE, TREND_LINES, plan_trend
 from acutance.cli.progress import progress_bar
 from acutance.cli.sensor import SensorName, named_sensor
 from acutance.cli.study import WorkersOption, execution_of
@@ -31,8 +32,8 @@ EXAMPLE = (
 app = typer.Typer(
     no_args_is_help=True,
     rich_markup_mode=None,
-    help="Plan a target: the accuracy to expect of it, where its parts have to stand.",
-    epilog=f"\b\nExamples:\n{EDGE_LINE}\n{PULSE_LINE}\n{EXAMPLE.splitlines()[-1]}",
+    help="Plan a target, or a watch over years: the accuracy to expect, where parts have to stand.",
+    epilog=f"\b\nExamples:\n{EDGE_LINE}\n{PULSE_LINE}\n{EXAMPLE.splitlines()[-1]}\n{TREND_LINES}",
 )
 app.command(
     "edge", short_help="How many rows, which angle: the accuracy to expect.", epilog=EDGE_EXAMPLE
@@ -42,6 +43,11 @@ app.command(
     short_help="How many rows, which angle and width: the accuracy to expect.",
     epilog=PULSE_EXAMPLE,
 )(plan_pulse)
+app.command(
+    "trend",
+    short_help="How many images, over how long, until a drift is noticed.",
+    epilog=TREND_EXAMPLE,
+)(plan_trend)
 
 
 @app.command("mirrors", epilog=EXAMPLE)

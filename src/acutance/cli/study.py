@@ -75,7 +75,9 @@ def study(
     from acutance.studies import STUDIES, run_study
 
     if name == "plan":
-        raise OptionError("plan is a command of its own: acutance plan edge, pulse or mirrors")
+        raise OptionError(
+            "plan is a command of its own: acutance plan edge, pulse, mirrors or trend"
+        )
     if name != "all" and name not in STUDIES:
         raise OptionError(f"there is no study {name!r}: the studies are {', '.join(STUDIES)}, all")
     if name == "all" and (changes or as_json):

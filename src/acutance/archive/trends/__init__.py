@@ -11,6 +11,7 @@ In the order the data take:
 - `normal_mixture`, `scatter`, `bands`: what is read from it
 - `changes`, `crossing`: steps and events; when a limit will be passed
 - `fit_trend`: all of it, from a series to a `trend`; `words`, `documents`: as text and JSON
+- `trend_plan`: how many images, over how long, until a drift is noticed
 - `tuned`: the numbers that were tuned
 """
 
@@ -20,6 +21,12 @@ from acutance.archive.trends.crossing import Crossing
 from acutance.archive.trends.fit_trend import fit_trend
 from acutance.archive.trends.series import Event, Series, date_of, decimal_year
 from acutance.archive.trends.trend import BadDay, Trend
+from acutance.archive.trends.trend_plan import (
+    PlannedWatch,
+    TrendPlan,
+    TrendPlanOptions,
+    plan_trend,
+)
 
 __all__ = [
     "BadDay",
@@ -27,10 +34,14 @@ __all__ = [
     "Crossing",
     "Event",
     "EventEffect",
+    "PlannedWatch",
     "Series",
     "Trend",
     "TrendBands",
+    "TrendPlan",
+    "TrendPlanOptions",
     "date_of",
     "decimal_year",
     "fit_trend",
+    "plan_trend",
 ]
