@@ -91,6 +91,25 @@ def test_figure_report_and_csv_are_written(acutance, edge_image, tmp_path):
     assert len(list(tmp_path.iterdir())) == 3
 
 
+def test_every_drawing_is_written_by_itself(acutance, edge_image, tmp_path):
+    assert acutance("edge", edge_image, "--panels", tmp_path / "e.pdf").exit_code == 0
+    names = ("edge-spread-function", "line-spread-function", "modulation-transfer-function",
+             "the-pixels-and-the-line")  # fmt: skip
+    assert sorted(one.name for one in tmp_path.iterdir()) == [f"e-{name}.pdf" for name in names]
+    # Letters that journals take: outlines of glyphs are refused.
+    content = (tmp_path / "e-modulation-transfer-function.pdf").read_bytes()
+    assert b"/Type3" not in content
+    assert b"/CIDFontType2" in content
+
+
+def test_drawings_of_compared_methods_are_numbered(acutance, edge_image, shown, tmp_path):
+    words = ("edge", edge_image, "--compare", "spline,fermi", "--panels", tmp_path / "e.svg")
+    assert acutance(*words).exit_code == 0
+    names = [one.name for one in tmp_path.iterdir()]
+    for number in (1, 2):
+        assert f"e-{number}-modulation-transfer-function.svg" in names
+
+
 def test_methods_are_compared(acutance, edge_image, shown, tmp_path):
     words = ("edge", edge_image, "--compare", "spline,iso12233", "--report", tmp_path / "c.html")
     result = acutance(*words)

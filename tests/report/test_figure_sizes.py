@@ -5,8 +5,8 @@ import pytest
 
 import acutance as ac
 from acutance import simulate
-from acutance.report import draw, page, panels, tables
-from acutance.report.paper import new_page, styled
+from acutance.report import draw, page, panel_figure, panels, tables
+from acutance.report.paper import styled
 
 SENSOR = simulate.reference_systems()["gaussian"]
 
@@ -14,9 +14,8 @@ SENSOR = simulate.reference_systems()["gaussian"]
 def drawn(measurement, title):
     """A panel on a page of its own, laid out."""
     (panel,) = (one for one in panels(measurement) if one.title == title)
+    figure = panel_figure(panel)
     with styled():
-        figure = new_page(12.4 if panel.wide else 6.0, panel.height_in)
-        panel.draw(figure)
         figure.canvas.draw()
     return figure
 

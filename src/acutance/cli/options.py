@@ -220,6 +220,14 @@ class ResultOptions:
             "FILE-NAME.png.",
         ),
     ] = None
+    panels: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE",
+            help="Draw each step by itself, for papers and slides: .png, .svg or .pdf; "
+            "FILE-modulation-transfer-function.pdf, ...",
+        ),
+    ] = None
     report: Annotated[
         str | None,
         typer.Option(

@@ -57,13 +57,15 @@ class Outputs:
 
     Parameters
     ----------
-    figure, report, csv : OutputFile or None
+    figure, panels, report, csv : OutputFile or None
+        The panels are files of their own, named after this one.
     as_json, covariance, strict : bool
     required : tuple of ToleranceLimit
         Requirements to be answered.
     """
 
     figure: OutputFile | None
+    panels: OutputFile | None
     report: OutputFile | None
     csv: OutputFile | None
     as_json: bool
@@ -88,9 +90,12 @@ class Outputs:
         """
         if options.covariance and not options.as_json:
             raise OptionError("--covariance belongs to the JSON document: add --json")
+        from acutance.report.paper import FIGURE_ENDINGS
+
         kept = tuple(inputs)
         return cls(
-            check_optional("--figure", options.figure, (".png", ".svg", ".pdf"), keep=kept),
+            check_optional("--figure", options.figure, FIGURE_ENDINGS, keep=kept),
+            check_optional("--panels", options.panels, FIGURE_ENDINGS, keep=kept),
             check_optional("--report", options.report, (".html",), keep=kept),
             check_optional("--csv", options.csv, (".csv",), keep=kept),
             options.as_json, options.covariance, options.strict, options.required,
@@ -109,6 +114,7 @@ class Outputs:
             replace(
                 self,
                 figure=_named(self.figure, stem, kept),
+                panels=_named(self.panels, stem, kept),
                 report=_named(self.report, stem, kept),
                 csv=_named(self.csv, stem, kept),
             )
@@ -142,6 +148,8 @@ class Outputs:
         if self.figure is not None:
             figure = report.draw(shown.result, **shown.drawn_on)
             self.figure.deliver(report.figure_bytes(figure, self.figure.ending))
+        if self.panels is not None:
+            _write_panels(self.panels, shown)
         if self.report is not None:
             page = report.page(
                 shown.result, command=command_line(), required=self.required, **shown.drawn_on
@@ -183,6 +191,19 @@ class Outputs:
             answer for shown in results for _, answer in answers_to(shown.result, self.required)
         )
         return sum(answer.word != MET for answer in answers)
+
+
+def _write_panels(output: OutputFile, shown: Shown) -> None:
+    """Every drawing of every measurement in a file of its own; those of several are numbered."""
+    from acutance import report
+
+    backdrop = shown.drawn_on.get("backdrop") if shown.measurements == [shown.result] else None
+    for number, measurement in enumerate(shown.measurements, start=1):
+        which = f"{number}-" if len(shown.measurements) > 1 else ""
+        for panel in report.panels(measurement, backdrop=backdrop):
+            one = _named(output, f"{which}{panel.name}", ())
+            assert one is not None
+            one.deliver(report.figure_bytes(report.panel_figure(panel), one.ending))
 
 
 def _named(output: OutputFile | None, stem: str, kept: tuple[str | None, ...]) -> OutputFile | None:

@@ -3,7 +3,8 @@
 Six functions take any result: a measurement of any kind, all edges of a target, or a list of
 measurements of one target, which is compared (`compare` adds the truth):
 
-- `draw` makes a figure (`figure.py`, drawings by kind in ``figures/``)
+- `draw` makes a figure (`figure.py`, drawings by kind in ``figures/``); of a measurement, `panels`
+  and `panel_figure` make one of each drawing
 - `tables` gives tables (``tables/``, by kind)
 - `page` writes HTML (`page.py`, made of the sections of `html.py`), `notebook_html` a part of it
 - `text` writes for a terminal, `csv` the MTF, `document` JSON (with its schema)
@@ -22,7 +23,7 @@ from acutance.report.budget import (
 )
 from acutance.report.comparison import Comparison, compare
 from acutance.report.csv import csv
-from acutance.report.figure import draw, panels
+from acutance.report.figure import draw, panel_figure, panels
 from acutance.report.figures.panel import Panel
 from acutance.report.figures.restoration import before_after_figure, restoration_figure
 from acutance.report.html import Table
@@ -74,6 +75,7 @@ __all__ = [
     "niirs_text",
     "notebook_html",
     "page",
+    "panel_figure",
     "panels",
     "plan_text",
     "proof_text",

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from acutance.curves.grid import Floats
     from acutance.targets.measurement import Measurement
 
-__all__ = ["KIND_PANELS", "draw", "measurement_figure", "panels"]
+__all__ = ["KIND_PANELS", "draw", "measurement_figure", "panel_figure", "panels"]
 
 KIND_PANELS: dict[str, Callable[[Any], tuple[Panel, ...]]] = {
     "bars": bars_panels,
@@ -50,6 +50,7 @@ KIND_PANELS: dict[str, Callable[[Any], tuple[Panel, ...]]] = {
 """What each kind of target draws after its curves; edges and pulses draw all by themselves."""
 
 WIDTH_IN = 13.0
+PANEL_IN = (4.4, 4.0)
 ROW_IN = 4.3
 LINE_IN = FONT_SIZE * ROW_HEIGHT / 72
 LINES_WITH_ROOM, LINES_BESIDE_DRAWING = 16, 24
@@ -106,6 +107,30 @@ def panels(measurement: Measurement, *, backdrop: Floats | None = None) -> tuple
         return (*curve_panels(measurement), *scene_panels(measurement, backdrop))  # type: ignore[arg-type]
     kind = KIND_PANELS.get(measurement.kind)
     return (*curve_panels(measurement), *(kind(measurement) if kind else ()))
+
+
+def panel_figure(panel: Panel) -> Figure:
+    """A drawing by itself, for a paper or a slide.
+
+    Parameters
+    ----------
+    panel : Panel
+        One of `panels`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        4.4 inches wide and 4 high, in letters of 9 points; a wide drawing as on the page of all.
+
+    Examples
+    --------
+    >>> mtf = panels(edge)[0]  # doctest: +SKIP
+    >>> save_figure(panel_figure(mtf), f"{mtf.name}.pdf")  # doctest: +SKIP
+    """
+    with styled():
+        figure = new_page(*((WIDTH_IN, panel.height_in) if panel.wide else PANEL_IN))
+        panel.draw(figure)
+    return figure
 
 
 def measurement_figure(measurement: Measurement, *, backdrop: Floats | None = None) -> Figure:

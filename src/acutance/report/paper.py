@@ -72,6 +72,8 @@ _STYLE: dict[Any, Any] = {
     # A dollar sign in a file name is a dollar sign.
     "text.parse_math": False,
     "svg.hashsalt": "acutance",
+    # Journals refuse the outlines that matplotlib would embed (Type 3).
+    "pdf.fonttype": 42,
     "figure.facecolor": "white",
 }
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -37,6 +38,11 @@ class Panel:
     wide: bool = False
     height_in: float = 4.3
     is_target: bool = False
+
+    @property
+    def name(self) -> str:
+        """The title as part of a file's name: modulation-transfer-function."""
+        return re.sub(r"\W+", "-", self.title.lower()).strip("-")
 
 
 def on_axes(draw: Callable[..., None], measurement: Any) -> Callable[[FigureBase], None]:
