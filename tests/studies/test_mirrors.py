@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -76,6 +77,34 @@ def test_a_plan_tells_scatter_bias_and_deviation_of_a_resampled_product():
     document = plan.to_dict()
     assert document["bias"][name] == plan.bias[name]
     assert document["refused"] == 0
+
+
+def planned(accuracy, scatter, bias, draws=20):
+    """A plan whose simulated errors are given."""
+    options = MirrorPlanOptions(SENSOR, draws=0)
+    names = ("mtf_nyquist across", "mtf_nyquist along")
+    return replace(
+        plan_mirrors(options), options=replace(options, accuracy=accuracy, draws=draws),
+        scatter=dict(zip(names, scatter, strict=True)), bias=dict(zip(names, bias, strict=True)),
+    )  # fmt: skip
+
+
+def test_a_wanted_accuracy_takes_so_many_images():
+    assert planned(0.02, (0.01, 0.015), (0.0, 0.0)).images_needed == 1
+    # Twice the error in the worse direction: four times the images, and the freedom of a mean.
+    assert planned(0.005, (0.004, 0.01), (0.0, 0.0), draws=1000).images_needed == 5
+    # A mean of 20 draws is not 0, where nothing is biased.
+    assert planned(0.0012, (0.01, 0.01), (0.002, 0.0)).images_needed == 74
+    assert planned(0.005, (0.01, 0.01), (0.008, 0.0)).images_needed == math.inf
+    assert planned(0.005, (0.01, 0.01), (0.008, 0.0)).to_dict()["images_needed"] is None
+    assert plan_mirrors(MirrorPlanOptions(SENSOR, draws=0)).images_needed is None
+
+
+def test_an_accuracy_without_simulated_images_is_refused():
+    with pytest.raises(ac.OptionError, match="draws \\(--draws\\) is 0: give 2 or more"):
+        MirrorPlanOptions(SENSOR, draws=0, accuracy=0.01)
+    with pytest.raises(ac.OptionError, match="accuracy is -1"):
+        MirrorPlanOptions(SENSOR, accuracy=-1.0)
 
 
 def test_a_mirror_left_out_of_the_fit_leaves_the_others_in_place():

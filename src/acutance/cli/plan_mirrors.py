@@ -83,6 +83,10 @@ def plan_mirrors(
     mirror: Annotated[float, typer.Option(metavar="R", help="Reflectance of the mirrors.")] = 0.85,
     sun_zenith: Annotated[float, typer.Option(metavar="DEG", help="Of the sun.")] = 40.0,
     view_zenith: Annotated[float, typer.Option(metavar="DEG", help="Of the satellite.")] = 10.0,
+    accuracy: Annotated[
+        float | None,
+        typer.Option(metavar="ERROR", help="Wanted for the MTF at Nyquist: how many images?"),
+    ] = None,
     draws: Annotated[
         int, typer.Option(metavar="N", min=0, help="Simulated images; 0 for the layout alone.")
     ] = 20,
@@ -114,6 +118,7 @@ def plan_mirrors(
         arrangement="square" if arrangement == "square" else "columns", columns=columns,
         spacing_px=spacing, snr=snr, level=level, ground=ground, mirror=mirror,
         sun_zenith_deg=sun_zenith, view_zenith_deg=view_zenith, draws=draws,
+        accuracy=accuracy,
     )  # fmt: skip
     with progress_bar("plan mirrors") as progress:
         result = lay_out(options, execution_of(seed, workers, None, progress))

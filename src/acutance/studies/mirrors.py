@@ -76,6 +76,8 @@ class MirrorPlanOptions:
         Zenith angles of the sun and of the satellite.
     draws : int
         Simulated images; 0 for the layout alone.
+    accuracy : float, optional
+        Wanted error of the MTF at Nyquist, across and along: answered by a number of images.
 
     Raises
     ------
@@ -95,6 +97,7 @@ class MirrorPlanOptions:
     sun_zenith_deg: float = 40.0
     view_zenith_deg: float = 10.0
     draws: int = 20
+    accuracy: float | None = None
 
     def __post_init__(self) -> None:
         require_types(self)
@@ -117,6 +120,13 @@ class MirrorPlanOptions:
         for name, (value, low, high) in bounds.items():
             if not low <= value <= high:
                 raise OptionError(f"{name} is {value:g}: it has to be {low:g} to {high:g}")
+        if self.accuracy is not None and not 0 < self.accuracy < math.inf:
+            raise OptionError(f"accuracy is {self.accuracy:g}: it has to be finite and above 0")
+        if self.accuracy is not None and 0 <= self.draws < 2:
+            raise OptionError(
+                f"accuracy (--accuracy) is answered by simulated images, and draws (--draws) is "
+                f"{self.draws}: give 2 or more"
+            )
         self._require_columns()
 
     def _require_columns(self) -> None:
@@ -191,6 +201,26 @@ class MirrorPlan:
         return POSITION_BOUND / self.options.snr
 
     @property
+    def images_needed(self) -> float | None:
+        """How many images of these mirrors give the wanted accuracy of the MTF at Nyquist.
+
+        Of the direction that needs more. Infinite where the bias alone, as far as the draws show
+        one, is larger; ``None`` where no accuracy is wanted, or no image could be measured.
+        """
+        wanted, measured = self.options.accuracy, self.options.draws - self.refused
+        if wanted is None or measured < 2:
+            return None
+        needed = 1.0
+        for direction in ("across", "along"):
+            name = f"mtf_nyquist {direction}"
+            variance = (self.scatter[name] ** 2 - self.bias[name] ** 2) * measured / (measured - 1)
+            # By chance the square of the mean of the draws is as large as that of nothing.
+            bias = max(self.bias[name] ** 2 - variance / measured, 0.0)
+            left = wanted**2 - bias
+            needed = max(needed, math.ceil(variance / left) if left > 0 else math.inf)
+        return needed
+
+    @property
     def notes(self) -> tuple[str, ...]:
         """What has to be said of the mirrors: that they are too large."""
         if self.diameter_m <= _MAX_DIAMETER_M:
@@ -231,6 +261,10 @@ class MirrorPlan:
             "std": dict(self.std),
             "scatter": dict(self.scatter),
             "bias": dict(self.bias),
+            "accuracy": options.accuracy,
+            "images_needed": None
+            if self.images_needed is None or math.isinf(self.images_needed)
+            else self.images_needed,
             "notes": list(self.notes),
         }
 

@@ -73,6 +73,7 @@ def mirror_plan_text(plan: MirrorPlan) -> str:
         f"ground of {options.ground:g};\n  the brightest pixel holds {100 * plan.peak_share:.0f} % "
         "of a mirror's light",
         _expected(plan),
+        *_images(plan),
         *(f"note: {note}" for note in plan.notes),
     ]
     return "\n\n".join(blocks)
@@ -104,6 +105,19 @@ def _expected(plan: MirrorPlan) -> str:
         + f"\n  at SNR {plan.options.snr:g}, {plan.options.draws} simulated images{refused}; "
         f"places no better than ± {bound} px" + _narrow(plan) + _biased(plan)
     )
+
+
+def _images(plan: MirrorPlan) -> list[str]:
+    """How many images give the wanted accuracy, if one is wanted."""
+    needed, wanted = plan.images_needed, plan.options.accuracy
+    if needed is None:
+        return []
+    asked = f"images: an error of {wanted:g} of the MTF at Nyquist, across and along, needs"
+    if math.isinf(needed):
+        return [f"{asked} a larger SNR or more mirrors:\n  the bias of these is as large"]
+    if needed == 1:
+        return [f"{asked} one image of these mirrors"]
+    return [f"{asked} the mean of {needed:.0f} images of these mirrors"]
 
 
 def _narrow(plan: MirrorPlan) -> str:
