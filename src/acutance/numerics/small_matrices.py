@@ -137,13 +137,14 @@ def add_products_of_rows(
     """Add the products of rows, (n, m) each, to a matrix (n, n), below its diagonal alone.
 
     Of so many columns, from one on. n is a multiple of four: the products of four rows with two
-    others stay in registers while the columns pass.
+    others stay in registers while the columns pass, in the precision of the rows.
     """
+    none = left.dtype.type(0)
     for i in range(0, len(left), 4):
         w, x, y, z = left[i, start:], left[i + 1, start:], left[i + 2, start:], left[i + 3, start:]
         for j in range(0, i + 4, 2):
             a, b = right[j, start:], right[j + 1, start:]
-            wa, wb, xa, xb, ya, yb, za, zb = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+            wa, wb, xa, xb, ya, yb, za, zb = none, none, none, none, none, none, none, none
             for k in range(count):
                 wa += w[k] * a[k]
                 wb += w[k] * b[k]

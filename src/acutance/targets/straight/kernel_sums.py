@@ -260,34 +260,41 @@ def kernel_moments(
     (g + 1,), (g + 1, q) and (g + 1, q, q) arrays
         All zero of one more group, about none.
     """
-    groups, p, most = len(counts), len(coordinates), np.max(counts)
+    groups, p, none = len(counts), len(coordinates), np.float32(0)
     total, mean = np.zeros(groups + 1), np.zeros((groups + 1, q))
-    spread, square = np.zeros((groups + 1, q, q)), np.empty((p, p))
-    place, share = np.empty(most, np.intp), np.empty(most)
-    own, weighted = np.empty((p, most)), np.empty((p, most))
+    spread, square, away = np.zeros((groups + 1, q, q)), np.empty((p, p)), np.empty(p)
+    place, share = np.empty(_SOME, np.intp), np.empty(_SOME, np.float32)
+    own, weighted = np.empty((p, _SOME), np.float32), np.empty((p, _SOME), np.float32)
     for g in range(groups):
-        count = 0
-        for k in range(counts[g]):
-            if log_weight[g, k] >= largest - _NEGLIGIBLE:
-                place[count], share[count] = kept[g, k], np.exp(log_weight[g, k] - largest)
-                total[g] += share[count]
-                count += 1
-        if count == 0:
+        # Moments about a centre: the digits of the coordinates are enough for small departures.
+        middle, n = kept[g, np.argmax(log_weight[g, : counts[g]])] if counts[g] else 0, 0
+        square[:], away[:] = 0.0, 0.0
+        while n < counts[g]:
+            count = 0
+            while count < _SOME and n < counts[g]:
+                place[count], share[count] = kept[g, n], np.exp(log_weight[g, n] - largest)
+                count += log_weight[g, n] >= largest - _NEGLIGIBLE
+                n += 1
+            sums = none
+            for k in range(count):
+                sums += share[k]
+            total[g] += sums
+            for i in range(p):
+                for k in range(count):
+                    own[i, k] = coordinates[i, place[k]] - coordinates[i, middle]
+                sums = none
+                for k in range(count):
+                    weighted[i, k] = share[k] * own[i, k]
+                    sums += weighted[i, k]
+                away[i] += sums
+            add_products_of_rows(square, weighted, own, 0, count)
+        if total[g] == 0:
             continue
-        for i in range(p):
-            for k in range(count):
-                own[i, k] = coordinates[i, place[k]]
-            for k in range(count):
-                weighted[i, k] = share[k] * own[i, k]
-        square[:] = 0.0
-        add_products_of_rows(square, weighted, own, 0, count)
         for i in range(q):
-            for k in range(count):
-                mean[g, i] += weighted[i, k]
-            mean[g, i] /= total[g]
-        for i in range(q):
+            away[i] /= total[g]
+            mean[g, i] = coordinates[i, middle] + away[i]
             for j in range(i + 1):
-                spread[g, i, j] = square[i, j] / total[g] - mean[g, i] * mean[g, j]
+                spread[g, i, j] = square[i, j] / total[g] - away[i] * away[j]
                 spread[g, j, i] = spread[g, i, j]
     return total, mean, spread
 
