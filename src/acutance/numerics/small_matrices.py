@@ -132,7 +132,11 @@ def products_of_rows(rows: Floats) -> Floats:
 
 @inlined
 def add_products_of_rows(
-    found: Floats, left: Floats, right: Floats, start: int, count: int
+    found: Floats,
+    left: NDArray[np.floating[Any]],
+    right: NDArray[np.floating[Any]],
+    start: int,
+    count: int,
 ) -> None:
     """Add the products of rows, (n, m) each, to a matrix (n, n), below its diagonal alone.
 

@@ -7,7 +7,9 @@ In the order the data take:
 - `images`: the measurements of an image are joined
 - `design`: the columns of level, drift, season and stated events
 - `steps`: steps at unknown dates, which places are weighed
-- `posterior`: all combinations, weighed by evidence (`acutance.numerics.student_regression`)
+- `target_effects`: what is peculiar to targets and sites that come again
+- `combinations`: steps, season, tails and targets, each weighed by evidence
+  (`acutance.numerics.student_regression`); `posterior`: all of them together
 - `normal_mixture`, `scatter`, `bands`: what is read from it
 - `changes`, `crossing`: steps and events; when a limit will be passed
 - `fit_trend`: all of it, from a series to a `trend`; `words`, `documents`: as text and JSON

@@ -23,6 +23,7 @@ def posterior_document(posterior: TrendPosterior) -> dict[str, Any]:
     rows, cols = np.tril_indices(posterior.mode.shape[1])
     document: dict[str, Any] = strict_json({
         "unit": posterior.unit,
+        "target_std": posterior.target_std,
         "centre": posterior.design.centre,
         "events": [
             {"when": str(event.when), "name": event.name, "changes_drift": event.changes_drift}
@@ -52,5 +53,7 @@ def read_posterior(document: Mapping[str, Any]) -> TrendPosterior:
         drifts=np.array(document["drifts"], bool),
         has_season=np.array(document["has_season"], bool),
         covariance=covariance,
+        # Documents of earlier versions know of no targets.
+        target_std=document.get("target_std", 0.0),
         **columns,
     )

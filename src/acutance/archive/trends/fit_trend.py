@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from acutance.archive.counted import counted
 from acutance.archive.trends.design import Design
 from acutance.archive.trends.gsd import gsd_events
-from acutance.archive.trends.images import ImageMeans, image_means, joined_images
+from acutance.archive.trends.images import ImageMeans, joined_images, parts_of_places
 from acutance.archive.trends.posterior import TrendPosterior, trend_posterior
 from acutance.archive.trends.series import Event, Series, date_of
+from acutance.archive.trends.target_effects import effects_and_images
 from acutance.archive.trends.trend import BadDay, Trend
 from acutance.archive.trends.tuned import MAX_IMAGES, MIN_IMAGES, OUTLIER_SCALES
 from acutance.curves.grid import Floats
@@ -47,11 +49,15 @@ def fit_trend(series: Series, events: Sequence[Event] = ()) -> Trend:
     """
     dated = series.dated()
     changes, notes = gsd_events(dated)
-    images = joined_images(image_means(dated), MAX_IMAGES)
-    _require_time(images, dated)
+    effects, single = effects_and_images(dated)
+    _require_time(single, dated)
+    images = joined_images(single, MAX_IMAGES)
+    effects = effects.joined(parts_of_places(single.size, MAX_IMAGES))
     ordered = tuple(sorted((*events, *changes), key=lambda event: event.year))
     design = Design(float(images.when.mean()), ordered)
-    posterior = trend_posterior(images, design)
+    posterior, added = trend_posterior(images, design, effects)
+    # Images are told as the mean of all targets would have them.
+    images = replace(images, value=images.value - added)
     return Trend(
         metric=series.metric, name=series.name, measurements=dated.size, images=images,
         posterior=posterior, bad_days=_bad_days(images, posterior, series),

@@ -21,7 +21,7 @@ from acutance.curves.metric_bounds import lowest_of
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 
-__all__ = ["ImageMeans", "image_means", "joined_images", "mean_of_images"]
+__all__ = ["ImageMeans", "image_means", "joined_images", "mean_of_images", "parts_of_places"]
 
 _HUBER: Final = 2.0
 """Deviations from which a measurement counts less."""
@@ -205,11 +205,16 @@ def mean_of_images(series: Series) -> WeightedMean:
     )
 
 
+def parts_of_places(size: int, most: int) -> list[NDArray[np.intp]]:
+    """Which neighbours in time become one place each, of so many images and places at most."""
+    return np.array_split(np.arange(size), min(size, most))
+
+
 def joined_images(images: ImageMeans, most: int) -> ImageMeans:
     """At most so many places: neighbours in time are joined, each with the scatter it shows."""
     if images.size <= most:
         return images
-    parts = np.array_split(np.arange(images.size), most)
+    parts = parts_of_places(images.size, most)
     centre = np.array([np.median(images.value[part]) for part in parts])
     deviation = np.concatenate([
         np.abs(images.value[part] - one) / np.sqrt(1 - 1 / part.size)

@@ -6,7 +6,7 @@ tell their sensor would else be joined to one.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Hashable, Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -200,10 +200,19 @@ def _series(rows: Columns, metric: str, mask: NDArray[np.bool_], size: str | Non
     return Series(
         metric=metric, when=years_of(rows["acquired"][mask]), value=value, std=std,
         systematic_std=systematic, image=image, gsd_m=pixel_side_m(rows, mask),
+        target=_codes([None if name is None else (site, name) for site, name in zip(
+            rows["site"][mask].tolist(), rows["target"][mask].tolist(), strict=True)]),
+        site=_codes(rows["site"][mask].tolist()),
         image_names={number: name for number, name in names.items() if name is not None},
         name=_title(rows, mask, size, rows["orientation"][mask][0]),
         notes=(*_unnamed(rows, mask), *_mixed(rows, mask), *restored_notes(rows, mask)),
     )  # fmt: skip
+
+
+def _codes(words: Sequence[Hashable | None]) -> NDArray[np.int64]:
+    """A number from 0 on for every word, -1 for none."""
+    index = {one: at for at, one in enumerate(dict.fromkeys(words)) if one is not None}
+    return np.array([-1 if one is None else index[one] for one in words], np.int64)
 
 
 def random_and_systematic(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from datetime import UTC, date, datetime, timedelta
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,6 +81,9 @@ class Series(ShortRepr):
         Which image: measurements of one image share its atmosphere.
     systematic_std : (n,) array, optional
         Part that all measurements of this sensor and method share: it does not average out.
+    target, site : (n,) int array, optional
+        Which target and which site, from 0 on; below 0 where it is not known. What comes again in
+        several images has an effect of its own (`acutance.archive.trends.target_effects`).
     gsd_m : (n,) array, optional
         GSD along the direction of the metric; ``nan`` where it is not known.
     image_names : mapping of int to str, optional
@@ -102,12 +106,15 @@ class Series(ShortRepr):
     image: NDArray[np.int64]
     systematic_std: Floats | None = None
     gsd_m: Floats | None = None
+    target: NDArray[np.int64] | None = None
+    site: NDArray[np.int64] | None = None
     image_names: Mapping[int, str] = field(default_factory=dict)
     name: str = ""
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        arrays = (self.when, self.std, self.image, self.systematic_std, self.gsd_m)
+        arrays = (self.when, self.std, self.image, self.systematic_std, self.gsd_m, self.target,
+                  self.site)  # fmt: skip
         sizes = {np.shape(array) for array in arrays if array is not None}
         if sizes - {np.shape(self.value)}:
             raise OptionError(
@@ -128,11 +135,13 @@ class Series(ShortRepr):
 
     def of(self, rows: NDArray[np.bool_]) -> Series:
         """The measurements of a mask."""
-        systematic, gsd_m = self.systematic_std, self.gsd_m
+        optional: dict[str, Any] = {
+            name: None if (array := getattr(self, name)) is None else array[rows]
+            for name in ("systematic_std", "gsd_m", "target", "site")
+        }
         return replace(
             self, when=self.when[rows], value=self.value[rows], std=self.std[rows],
-            image=self.image[rows], gsd_m=None if gsd_m is None else gsd_m[rows],
-            systematic_std=None if systematic is None else systematic[rows],
+            image=self.image[rows], **optional,
         )  # fmt: skip
 
     def known(self) -> Series:

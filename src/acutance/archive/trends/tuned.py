@@ -12,6 +12,7 @@ __all__ = [
     "DEGREES",
     "DRIFT_STDS_PER_YEAR",
     "EVENT_STD",
+    "FREE_TARGET_STD",
     "MAX_IMAGES",
     "MIN_IMAGES",
     "MIN_IMAGES_BY_STEPS",
@@ -24,6 +25,7 @@ __all__ = [
     "SEASON_STD",
     "STEPS_PER_YEAR",
     "STEP_STD",
+    "TARGET_STDS",
 ]
 
 DRIFT_STDS_PER_YEAR: Final = {0.05: 0.4, 0.3: 0.1}
@@ -42,6 +44,11 @@ CHANGED: Final = 0.5
 """Probability of a drift or a step from which a sensor is said not to be steady."""
 EVENT_STD: Final = 0.15
 """Standard deviation of the prior of the step at a stated event: it is expected to change much."""
+TARGET_STDS: Final = {0.003: 0.15, 0.012: 0.3, 0.03: 0.3, 0.07: 0.17, 0.16: 0.08}
+"""Standard deviations of what is peculiar to targets (or sites) that come again, and their prior
+probabilities: a half-Cauchy prior of median .025."""
+FREE_TARGET_STD: Final = 0.3
+"""Standard deviation by which effects are first taken out, as good as free."""
 SEASON_STD: Final = 0.03
 """Standard deviation of the prior of the cosine and of the sine of a season."""
 SEASON_PROBABILITY: Final = 0.2
