@@ -18,6 +18,7 @@ Sees records only, never pixels. In the order the data take:
 - `exchange`: files of documents and tables, in and out
 - `weighted_means`: means of measurements that disagree
 - `trends`: drift, steps, season and scatter of a sensor through the years
+- `mean_of_images`: the mean of a series over its images, targets and sites
 - `comparison_margin`, `comparisons`: whether across and along differ, whether methods agree
 - `specification`, `specification_check`, `requirement_answers`: requirements, are they met
 - `tables_by`: tables across and along by sensor, band, site, date

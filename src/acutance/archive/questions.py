@@ -82,7 +82,7 @@ class Questions(ABC):
         **selection
             Filters, as of `measurements`.
         """
-        from acutance.archive.trends.images import mean_of_images
+        from acutance.archive.mean_of_images import mean_of_images
 
         return mean_of_images(self.series(metric, **selection))
 

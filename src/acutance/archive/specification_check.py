@@ -17,11 +17,11 @@ from typing import Any, Final
 import numpy as np
 
 from acutance.archive.columns import Columns
+from acutance.archive.mean_of_images import mean_of_images
 from acutance.archive.requirement_answers import Answer, SpecificationCheck
 from acutance.archive.requirement_selection import asked_of, asks_nothing
 from acutance.archive.specification import Requirement, Specification
 from acutance.archive.trends.fit_trend import fit_trend
-from acutance.archive.trends.images import mean_of_images
 from acutance.archive.trends.measured_series import all_series, unmeasured_directions
 from acutance.archive.trends.series import Event, Series, date_of, decimal_year
 from acutance.archive.trends.trend import Trend

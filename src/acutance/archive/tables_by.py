@@ -15,11 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.archive.columns import Columns
+from acutance.archive.mean_of_images import mean_of_images
 from acutance.archive.measurements import Measurements
 from acutance.archive.natural_order import natural_key
 from acutance.archive.restored_images import restored_notes
-from acutance.archive.trends.images import mean_of_images
-from acutance.archive.trends.measured_series import random_and_systematic
+from acutance.archive.trends.measured_series import random_and_systematic, target_codes
 from acutance.archive.trends.series import Series
 from acutance.curves import METRICS, Estimate
 from acutance.errors import NothingSelectedError, OptionError
@@ -287,7 +287,7 @@ def _cell(rows: Columns, metric: str, mask: NDArray[np.bool_]) -> Estimate:
     random, systematic = random_and_systematic(rows, metric, mask)
     series = Series(
         metric=metric, when=np.zeros(value.size), value=value, std=random,
-        systematic_std=systematic, image=rows["image_id"][mask],
+        systematic_std=systematic, image=rows["image_id"][mask], **target_codes(rows, mask),
     )  # fmt: skip
     return mean_of_images(series).mean
 

@@ -13,7 +13,7 @@ from acutance.archive.trends.gsd import gsd_events
 from acutance.archive.trends.images import ImageMeans, joined_images, parts_of_places
 from acutance.archive.trends.posterior import TrendPosterior, trend_posterior
 from acutance.archive.trends.series import Event, Series, date_of
-from acutance.archive.trends.target_effects import effects_and_images
+from acutance.archive.trends.target_effects import TargetEffects, effects_and_images
 from acutance.archive.trends.trend import BadDay, Trend
 from acutance.archive.trends.tuned import MAX_IMAGES, MIN_IMAGES, OUTLIER_SCALES
 from acutance.curves.grid import Floats
@@ -61,7 +61,8 @@ def fit_trend(series: Series, events: Sequence[Event] = ()) -> Trend:
     return Trend(
         metric=series.metric, name=series.name, measurements=dated.size, images=images,
         posterior=posterior, bad_days=_bad_days(images, posterior, series),
-        notes=(*series.notes, *_left_out(series, dated), *_outside(images, events), *notes),
+        notes=(*series.notes, *_left_out(series, dated), *_outside(images, events), *notes,
+               *_targets(effects, posterior)),
     )  # fmt: skip
 
 
@@ -84,6 +85,28 @@ def _left_out(series: Series, dated: Series) -> tuple[str, ...]:
     left = series.known().size - dated.size
     are = "is" if left == 1 else "are"
     return (f"{counted(left, 'measurement')} without a date {are} left out.",) if left else ()
+
+
+def _targets(effects: TargetEffects, posterior: TrendPosterior) -> tuple[str, ...]:
+    """What targets and sites that come again have to do with the numbers."""
+    if not effects.are_known:
+        return ()
+    words = " at ".join(
+        counted(count, name)
+        for count, name in ((effects.targets, "target"), (effects.sites, "site")) if count
+    )  # fmt: skip
+    share = posterior.target_std / posterior.unit
+    notes = [
+        f"The images are of {words}, which differ by about {100 * share:.2g} % (standard "
+        "deviation): the level is that of so many, and images are told as the mean of them would "
+        "have them."
+    ]
+    if effects.in_turn:
+        notes.append(
+            "One follows another: what they differ by looks like a change of the sensor, and such "
+            "a change like them. Take one image of both, or select one."
+        )
+    return tuple(notes)
 
 
 def _outside(images: ImageMeans, events: Sequence[Event]) -> tuple[str, ...]:

@@ -8,20 +8,17 @@ targets differ, deviations are stated too small) is fitted over all images toget
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from acutance.archive.trends.series import Series
-from acutance.archive.weighted_means import WeightedMean, weighted_mean
 from acutance.curves.grid import Floats
-from acutance.curves.metric_bounds import lowest_of
 from acutance.curves.short_repr import ShortRepr
-from acutance.errors import OptionError
 
-__all__ = ["ImageMeans", "image_means", "joined_images", "mean_of_images", "parts_of_places"]
+__all__ = ["ImageMeans", "image_means", "joined_images", "parts_of_places"]
 
 _HUBER: Final = 2.0
 """Deviations from which a measurement counts less."""
@@ -174,35 +171,6 @@ def _robust_means(
         mean = np.bincount(index, weight * value) / np.bincount(index, weight)
     off = np.minimum(np.abs(value - mean[index]) * share / std, _HUBER)
     return mean, float((off[count[index] > 1] ** 2).sum())
-
-
-def mean_of_images(series: Series) -> WeightedMean:
-    """The mean over images with random effects, whatever their dates.
-
-    Parameters
-    ----------
-    series : Series
-
-    Raises
-    ------
-    OptionError
-        If no measurement has a value.
-    """
-    known = series.known()
-    if known.size == 0:
-        raise OptionError(f"no measurement has a value of {series.metric}: choose another number")
-    lowest = lowest_of(series.metric)
-    if np.unique(known.image).size == 1:
-        # No other image shows how much they scatter: the targets of this one stand in.
-        systematic = 0.0
-        if known.systematic_std is not None:
-            systematic = float(np.nan_to_num(known.systematic_std).mean())
-        found = weighted_mean(known.value, known.std, systematic_std=systematic, lowest=lowest)
-        return replace(found, count=1)
-    images = image_means(replace(known, when=np.zeros(known.size)))
-    return weighted_mean(
-        images.value, np.sqrt(images.variance), systematic_std=images.systematic_std, lowest=lowest
-    )
 
 
 def parts_of_places(size: int, most: int) -> list[NDArray[np.intp]]:

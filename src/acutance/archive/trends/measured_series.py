@@ -7,6 +7,7 @@ tell their sensor would else be joined to one.
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Sequence
+from typing import TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +29,7 @@ __all__ = [
     "one_series",
     "pixel_side_m",
     "random_and_systematic",
+    "target_codes",
     "unmeasured_directions",
     "years_of",
 ]
@@ -40,6 +42,13 @@ _ONE_OF = (*_PRODUCT, "orientation")
 """What a trend is of one of."""
 _MIXED = ("method", "kind")
 """What differs in how it measures: its change looks like one of the sensor."""
+
+
+class TargetCodes(TypedDict):
+    """Fields of a series, (n,) each."""
+
+    target: NDArray[np.int64]
+    site: NDArray[np.int64]
 
 
 def one_series(rows: Columns, metric: str) -> Series:
@@ -200,13 +209,26 @@ def _series(rows: Columns, metric: str, mask: NDArray[np.bool_], size: str | Non
     return Series(
         metric=metric, when=years_of(rows["acquired"][mask]), value=value, std=std,
         systematic_std=systematic, image=image, gsd_m=pixel_side_m(rows, mask),
-        target=_codes([None if name is None else (site, name) for site, name in zip(
-            rows["site"][mask].tolist(), rows["target"][mask].tolist(), strict=True)]),
-        site=_codes(rows["site"][mask].tolist()),
+        **target_codes(rows, mask),
         image_names={number: name for number, name in names.items() if name is not None},
         name=_title(rows, mask, size, rows["orientation"][mask][0]),
         notes=(*_unnamed(rows, mask), *_mixed(rows, mask), *restored_notes(rows, mask)),
     )  # fmt: skip
+
+
+def target_codes(rows: Columns, mask: NDArray[np.bool_]) -> TargetCodes:
+    """Which target and which site some rows are of, as a series has them.
+
+    Parameters
+    ----------
+    rows : Columns
+    mask : (m,) bool array
+        Which n of the rows.
+    """
+    sites, names = (rows[name][mask].tolist() for name in ("site", "target"))
+    targets = [None if name is None else (site, name)
+               for site, name in zip(sites, names, strict=True)]  # fmt: skip
+    return {"target": _codes(targets), "site": _codes(sites)}
 
 
 def _codes(words: Sequence[Hashable | None]) -> NDArray[np.int64]:

@@ -72,20 +72,24 @@ class TargetEffects:
         What measurements within images say: M and r above.
     taken : (k,) array
         Effects that were taken out of the measurements before the images were joined.
-    targets : int
-        Targets, or sites where targets are not told apart.
+    targets, sites : int
+        How many there are.
+    in_turn : bool
+        Whether targets, or sites, follow one another in time: none comes back after another.
     """
 
     share: Floats
     information: Floats
     pull: Floats
     taken: Floats
-    targets: int
+    targets: int = 0
+    sites: int = 0
+    in_turn: bool = False
 
     @classmethod
     def none(cls, images: int) -> TargetEffects:
         """Of measurements without targets that come again."""
-        return cls(np.zeros((images, 0)), np.zeros((0, 0)), np.zeros(0), np.zeros(0), 0)
+        return cls(np.zeros((images, 0)), np.zeros((0, 0)), np.zeros(0), np.zeros(0))
 
     @property
     def are_known(self) -> bool:
@@ -144,16 +148,28 @@ def effects_and_images(series: Series) -> tuple[TargetEffects, ImageMeans]:
         taken = np.asarray(np.linalg.solve(information + np.eye(pull.size) / prior, pull), float)
         images = image_means(replace(series, value=series.value - member @ taken))
     share = _share_of_images(series, images, member, weight)
-    targets = _known(series.target) or _known(series.site)
-    return TargetEffects(share, information, pull, taken, targets), images
+    labels = (series.target, series.site)
+    found = TargetEffects(
+        share, information, pull, taken, _count(series.target), _count(series.site),
+        in_turn=any(_follow(label, series.when) for label in labels),
+    )  # fmt: skip
+    return found, images
 
 
 def _level(series: Series) -> float:
     return abs(float(np.median(series.value))) or 1.0
 
 
-def _known(label: NDArray[np.int64] | None) -> int:
+def _count(label: NDArray[np.int64] | None) -> int:
     return 0 if label is None else np.unique(label[label >= 0]).size
+
+
+def _follow(label: NDArray[np.int64] | None, when: Floats) -> bool:
+    """Whether several labels stand in blocks in time."""
+    if label is None or _count(label) < 2:
+        return False
+    known = label[label >= 0][np.argsort(when[label >= 0], kind="stable")]
+    return bool(1 + np.count_nonzero(np.diff(known)) == _count(label))
 
 
 def _membership(series: Series) -> Floats:

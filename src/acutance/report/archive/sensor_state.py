@@ -9,8 +9,8 @@ from datetime import date
 import numpy as np
 
 from acutance.archive.columns import Columns
+from acutance.archive.mean_of_images import mean_of_images
 from acutance.archive.trends import Event, Trend, fit_trend
-from acutance.archive.trends.images import mean_of_images
 from acutance.archive.trends.measured_series import NO_SENSOR, all_series
 from acutance.archive.trends.series import date_of
 from acutance.archive.weighted_means import WeightedMean
