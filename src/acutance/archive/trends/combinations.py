@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -23,6 +24,7 @@ from acutance.archive.trends.steps import (
 from acutance.archive.trends.target_effects import EffectsGiven
 from acutance.archive.trends.tuned import (
     DEGREES,
+    EVENT_STDS,
     SCATTER,
     SEASON_PROBABILITY,
     STEP_STD,
@@ -44,14 +46,16 @@ _NODES: Final[Floats] = np.linspace(-2.4, 2.8, 5)
 _SETS: Final = 40
 _COVERED: Final = 0.97
 _UNLIKELY: Final = 4.0
-"""Logarithm by which the weight of a target deviation is less than the best, to be left out."""
+"""Logarithm by which the weight of a deviation of events or targets is less than the best, to be
+left out."""
 
 
 class State(NamedTuple):
-    """Season, degrees of freedom, and the relative deviation between targets."""
+    """Season, degrees of freedom; relative deviations of steps at events, and between targets."""
 
     season: bool
     degrees: float
+    event_std: float
     target_std: float
 
 
@@ -117,7 +121,9 @@ def _model(
 ) -> StudentModel:  # fmt: skip
     value = (images.value - effects.shift) / unit
     columns = np.hstack([design.columns(images.when), effects.columns / unit])
-    precision = design.precision(drift_std=drift_std, season=state.season)
+    precision = design.precision(
+        drift_std=drift_std, season=state.season, event_std=state.event_std
+    )
     spread = 1.4826 * float(np.median(np.abs(value - np.median(value))))
     return StudentModel(
         columns, value, images.variance / unit**2,
@@ -126,14 +132,15 @@ def _model(
     )  # fmt: skip
 
 
-def _states(targets: TargetStds) -> Iterator[tuple[State, float]]:
+def _states(targets: TargetStds, events: int) -> Iterator[tuple[State, float]]:
     """Every state, and its log prior with what images say by themselves of their targets."""
-    for season in (False, True):
-        chance = SEASON_PROBABILITY if season else 1 - SEASON_PROBABILITY
-        for degrees in DEGREES:
-            for std, (effects, own) in targets.items():
-                log_prior = float(np.log(own * chance / len(DEGREES)))
-                yield State(season, degrees, std), log_prior + effects.log_evidence
+    seasons = {False: 1 - SEASON_PROBABILITY, True: SEASON_PROBABILITY}
+    steps = EVENT_STDS if events else {max(EVENT_STDS): 1.0}
+    for (season, chance), degrees, (event_std, steep), (std, (effects, own)) in product(
+        seasons.items(), DEGREES, steps.items(), targets.items()
+    ):
+        log_prior = float(np.log(own * steep * chance / len(DEGREES)))
+        yield State(season, degrees, event_std, std), log_prior + effects.log_evidence
 
 
 def drift_family(
@@ -158,7 +165,7 @@ def drift_family(
             _model(images, design, unit, drift_std, state, targets[state.target_std][0]),
             targets[state.target_std][0], log_prior,
         )
-        for state, log_prior in _states(targets)
+        for state, log_prior in _states(targets, len(design.events))
     }  # fmt: skip
     few = places._replace(most=min(places.most, 1))
     first = {state: _log_sum(weigh_steps(model.regression, few)) + model.log_prior
@@ -181,13 +188,16 @@ def drift_family(
 
 
 def _likely(models: dict[State, _Model], first: Mapping[State, float]) -> dict[State, _Model]:
-    """The models without target deviations that no combination of the rest makes likely."""
-    best = {
-        std: max(log_one for state, log_one in first.items() if state.target_std == std)
-        for std in {state.target_std for state in first}
-    }
+    """The models without deviations of events and targets that no season or tail makes likely."""
+    best: dict[tuple[float, float], float] = {}
+    for state, log_one in first.items():
+        stds = state.event_std, state.target_std
+        best[stds] = max(log_one, best.get(stds, -np.inf))
     least = max(best.values()) - _UNLIKELY
-    return {state: model for state, model in models.items() if best[state.target_std] >= least}
+    return {
+        state: model for state, model in models.items()
+        if best[state.event_std, state.target_std] >= least
+    }  # fmt: skip
 
 
 def _log_sum(found: list[StepSets]) -> float:
@@ -238,8 +248,10 @@ def _without_effects(
 ) -> tuple[ScatterNodes, Floats]:
     """The densities of all other coefficients, and the mean of the effects in the images."""
     end = columns + effects.columns.shape[1]
+    if end == columns:
+        return nodes, effects.shift
     mean = nodes.share @ nodes.mode[:, columns:end]
-    kept = np.r_[:columns, end : nodes.mode.shape[1]]
+    kept = [*range(columns), *range(end, nodes.mode.shape[1])]
     # A normal density without some of its coefficients is that of the others.
     own = replace(nodes, mode=nodes.mode[:, kept], covariance=nodes.covariance[:, kept][:, :, kept])
     return own, effects.shift + effects.columns @ mean

@@ -9,7 +9,6 @@ import numpy as np
 from acutance.archive.trends.series import Event
 from acutance.archive.trends.tuned import (
     DRIFT_STDS_PER_YEAR,
-    EVENT_STD,
     NO_STD,
     SEASON_STD,
 )
@@ -68,7 +67,7 @@ class Design:
                 found.append(float(when >= event.year))
         return np.array(found)
 
-    def precision(self, *, drift_std: float, season: bool) -> Floats:
+    def precision(self, *, drift_std: float, season: bool, event_std: float) -> Floats:
         """Of the priors of all columns, relative to the level; that of the level is flat.
 
         Parameters
@@ -76,12 +75,14 @@ class Design:
         drift_std : float
             Of the drift per year; 0 where there is none.
         season : bool
+        event_std : float
+            Of the step at an event.
         """
         drift = max(drift_std, NO_STD)
         wave = SEASON_STD if season else NO_STD
         stds = [drift, wave, wave]
         for event in self.events:
-            stds.append(EVENT_STD)
+            stds.append(event_std)
             if event.changes_drift:
                 stds.append(max(DRIFT_STDS_PER_YEAR))
         return np.array([0.0, *(1 / std**2 for std in stds)])

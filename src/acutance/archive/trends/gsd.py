@@ -67,6 +67,11 @@ def gsd_events(series: Series) -> tuple[tuple[Event, ...], tuple[str, ...]]:
             f"The {span}, from image to image: numbers in pixels scatter with it. Compare lengths "
             "in metres (fwhm_m).",
         )
+    if not changed:
+        return (), (
+            f"The {span}, little by little: numbers in pixels drift with it. Compare lengths in "
+            "metres (fwhm_m).",
+        )
     # The moment and not its day, which would begin before the earlier of two images of a day.
     events = tuple(
         Event(moment_of(0.5 * float(when[at - 1] + when[at])),

@@ -63,8 +63,16 @@ class NormalMixture(ShortRepr):
 
         Tails of few measurements are longer than normal ones, so that this is more than the
         standard deviation of a normal density with the same middle part.
+
+        Parameters
+        ----------
+        lowest : float, optional
+            What the quantity cannot fall below. Where the middle lies beyond, what remains of the
+            interval stands for it.
         """
         low, high = self.interval()
+        if lowest is not None and low + high < 2 * lowest:
+            low, high = lowest, max(high, lowest)
         half = 0.5 * (high - low)
         return Estimate(0.5 * (low + high), half / normal_quantile(_LEVEL), lowest)
 
