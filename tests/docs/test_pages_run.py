@@ -14,12 +14,12 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from page_blocks import COMMANDS, STATEMENTS, Block, page_blocks, readme_blocks
+from page_blocks import COMMANDS, STATEMENTS, Block, page_blocks
 
 DOCS = Path(__file__).parents[2] / "docs"
 README = DOCS.parent / "README.md"
 PAGES = sorted([*DOCS.glob("*.rst"), *DOCS.glob("studies/*.rst")])
-LONG = ("acutance demo", "acutance study")
+LONG = ("acutance demo", "acutance plan", "acutance study")
 
 
 @pytest.fixture
@@ -39,6 +39,14 @@ def run_command(acutance):
         return f"exit code {result.exit_code}\n{result.stderr}\n{result.exception!r}"
 
     return run
+
+
+@pytest.fixture(autouse=True)
+def fast(few_forms, monkeypatch):
+    """Pages of reports have no content, and sensors of scenes two forms."""
+    monkeypatch.setattr("acutance.report.page", lambda *result, **how: "<!DOCTYPE html>")
+    with few_forms():
+        yield
 
 
 @pytest.fixture(autouse=True)
