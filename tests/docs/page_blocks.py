@@ -74,7 +74,9 @@ def readme_blocks(path: Path) -> list[Block]:
         inside = lines[begin + 1 : end]
         if language == COMMANDS:
             inside = [f"$ {line}" if line else line for line in inside]
-        found.append(Block(language, begin + 2, tuple(inside)))
+        # A clone of the repository is not what a reader has.
+        if not any(line.startswith("$ make ") for line in inside):
+            found.append(Block(language, begin + 2, tuple(inside)))
     return found
 
 

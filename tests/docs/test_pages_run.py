@@ -2,7 +2,7 @@
 
 What they print is compared with nothing: last digits depend on the machine. Figures and pages are
 not drawn; the tests of the report draw every kind of result. Commands that take minutes are run by
-``make docs``, which sets PAGES=all; without it `LONG` lists what is left out.
+``make docs``, which sets PAGES=all: those that begin as `LONG` says, and the README's.
 """
 
 from __future__ import annotations
@@ -14,10 +14,12 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from page_blocks import COMMANDS, STATEMENTS, Block, page_blocks
+from page_blocks import COMMANDS, STATEMENTS, Block, page_blocks, readme_blocks
 
 DOCS = Path(__file__).parents[2] / "docs"
 README = DOCS.parent / "README.md"
+ALL = os.environ.get("PAGES") == "all"
+EXAMPLES = sorted((DOCS / "examples").glob("plot_*.py"))
 PAGES = sorted([*DOCS.glob("*.rst"), *DOCS.glob("studies/*.rst")])
 LONG = ("acutance demo", "acutance plan", "acutance study")
 
@@ -81,7 +83,7 @@ def _paste(page: Path, blocks: list[Block], run_command) -> None:
             source = "\n" * (block.first - 1) + block.text
             exec(compile(source, str(page), "exec"), names)
         for at, line in block.commands if block.language == COMMANDS else []:
-            if line.startswith(LONG) and os.environ.get("PAGES") != "all":
+            if line.startswith(LONG) and not ALL:
                 continue
             wrong = run_command(line)
             assert not wrong, f"{page.name}, line {at}: {line}\n{wrong}"
@@ -94,6 +96,18 @@ def test_all_blocks_of_a_page_run_from_top_to_bottom(page, run_command):
     _paste(page, page_blocks(page), run_command)
 
 
+@pytest.mark.skipif(not ALL, reason="takes minutes: make docs runs it, with PAGES=all")
+def test_the_readme_runs_from_top_to_bottom(run_command):
+    _paste(README, readme_blocks(README), run_command)
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_python_stands_in_blocks_that_are_run(page):
     assert ">>>" not in page.read_text(encoding="utf-8"), "write a block of Python instead"
+
+
+@pytest.mark.parametrize("script", EXAMPLES, ids=lambda script: script.stem)
+def test_an_example_that_is_run_alone_ends_with_its_figure_as_a_file(script):
+    *_, saved, told = script.read_text(encoding="utf-8").splitlines()
+    assert saved.startswith("figure.savefig(")
+    assert told.startswith('print("wrote ')
