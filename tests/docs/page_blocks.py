@@ -75,7 +75,7 @@ def readme_blocks(path: Path) -> list[Block]:
         if language == COMMANDS:
             inside = [f"$ {line}" if line else line for line in inside]
         # A clone of the repository is not what a reader has.
-        if not any(line.startswith("$ make ") for line in inside):
+        if not any(line.startswith(("$ make ", "$ python ")) for line in inside):
             found.append(Block(language, begin + 2, tuple(inside)))
     return found
 
