@@ -21,7 +21,14 @@ README = DOCS.parent / "README.md"
 ALL = os.environ.get("PAGES") == "all"
 EXAMPLES = sorted((DOCS / "examples").glob("plot_*.py"))
 PAGES = sorted([*DOCS.glob("*.rst"), *DOCS.glob("studies/*.rst")])
-LONG = ("acutance demo", "acutance plan", "acutance study")
+LONG = (
+    "acutance demo",
+    "acutance plan",
+    "acutance study",
+    # The blocks of Python next to them scan the same images.
+    "acutance scan land.tif --report",
+    "acutance scan bands.tif",
+)
 
 
 @pytest.fixture
