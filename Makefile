@@ -26,10 +26,13 @@ loops: $(VENV)/.installed
 demo: $(VENV)/.installed
 	$(BIN)/acutance demo demo
 
+# Commands of the pages that take minutes, and those of the README, are run here; all others by `make test`.
 docs: $(VENV)/.installed
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[docs]"
 	$(BIN)/python -m sphinx -W --keep-going -b html docs docs/_build/html
+	PAGES=all $(BIN)/python -m pytest tests/docs
 
 clean:
 	find src -name '*.nb[ic]' -delete
+	rm -f docs/examples/*.png
 	rm -rf $(VENV) docs/_build docs/gallery docs/generated demo

@@ -1,4 +1,5 @@
-"""What tests of several rooms need: a private server of PostgreSQL, scenes that are fitted fast."""
+"""What tests of several rooms need: the command line run inside the test, a private server of
+PostgreSQL, scenes that are fitted fast."""
 
 from __future__ import annotations
 
@@ -11,7 +12,9 @@ import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 import pytest
 from sqlalchemy import create_engine, text
@@ -119,6 +122,23 @@ def postgres_server() -> Iterator[PostgresServer]:
 def postgres_url(postgres_server: PostgresServer) -> str:
     """An empty database."""
     return postgres_server.new_database("test")
+
+
+@pytest.fixture(scope="session")
+def acutance() -> Iterator[Callable[..., Any]]:
+    """Run a command line; the result has .exit_code, .stdout and .stderr."""
+    from typer.main import get_command
+    from typer.testing import CliRunner
+
+    from acutance.cli.app import app
+
+    def run(*words: object) -> Any:
+        return CliRunner().invoke(app, [str(word) for word in words])
+
+    # The runner builds all commands anew for every line, which takes longer than most lines do.
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr("typer.testing._get_command", cache(get_command), raising=False)
+        yield run
 
 
 @pytest.fixture(scope="session")

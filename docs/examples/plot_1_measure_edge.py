@@ -42,3 +42,8 @@ for name, estimate in measurement.metrics().items():
 # The same steps as a figure, and the curves as arrays.
 figure = report.draw(measurement)
 print(measurement.mtf.freq_cpp[::25], measurement.mtf.value[::25].round(4))
+
+# %%
+# The figure as a file.
+figure.savefig("measured-edge.png", dpi=110)
+print("wrote measured-edge.png")

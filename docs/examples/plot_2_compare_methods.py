@@ -36,3 +36,8 @@ for distance in ("row", "normal"):
     found = ac.measure_edge(image, method="sdsu-2005", options=options)
     print(f"sdsu-2005, {distance:6} distance: {found.mtf_nyquist}")
 print(f"truth:                      {truth.mtf_nyquist}")
+
+# %%
+# The figure as a file.
+figure.savefig("methods.png", dpi=110)
+print("wrote methods.png")

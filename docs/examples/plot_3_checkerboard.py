@@ -33,3 +33,8 @@ for orientation, group in result.groups.items():
         f"{orientation:6} {len(group.measurements)} edges: {number}, truth {truth.mtf_nyquist},"
         f" chance of a larger chi-square {group.p_value['mtf_nyquist']:.2f}"
     )
+
+# %%
+# The figure as a file.
+figure.savefig("checkerboard.png", dpi=110)
+print("wrote checkerboard.png")

@@ -48,3 +48,8 @@ axes.set(xlabel="rows of the edge", ylabel="standard deviation of the MTF at Nyq
 axes.minorticks_off()
 axes.grid(True, alpha=0.4)
 axes.legend()
+
+# %%
+# The figure as a file.
+figure.savefig("rows.png", dpi=110)
+print("wrote rows.png")

@@ -44,3 +44,8 @@ right.set(title="Phase (dashed: truth)", xlabel="frequency, cycles per pixel", y
 for polarity, (found, _) in results.items():
     dark, bright = found.response.half_extent_dark_px, found.response.half_extent_bright_px
     print(f"{polarity:8} 5-50 %: {dark} px, 50-95 %: {bright} px")
+
+# %%
+# The figure as a file.
+figure.savefig("asymmetric-sensor.png", dpi=110)
+print("wrote asymmetric-sensor.png")

@@ -56,3 +56,8 @@ for check in measurement.failed_checks:
 # %%
 # On the command line: ``acutance edge scene.tif --roi target.geojson --figure edge.png``.
 figure = report.draw(measurement)
+
+# %%
+# The figure as a file.
+figure.savefig("region.png", dpi=110)
+print("wrote region.png")

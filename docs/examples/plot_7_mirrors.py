@@ -53,3 +53,8 @@ right.errorbar(error[:, 1], error[:, 0], 3 * std[:, 0], 3 * std[:, 1], fmt="o")
 right.axhline(0, color="k", lw=0.8)
 right.axvline(0, color="k", lw=0.8)
 right.set(title="Errors of the places", xlabel="across, px", ylabel="along, px")
+
+# %%
+# The figure as a file.
+figure.savefig("mirrors.png", dpi=110)
+print("wrote mirrors.png")

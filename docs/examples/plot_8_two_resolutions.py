@@ -55,3 +55,8 @@ for i, name in enumerate(("across", "along")):
     right.plot(quotient.freq_cpp, quotient.value, ":", color=f"C{i}")
 right.set(xlim=(0, 0.8), ylim=(0, 1.05), title="MTF", xlabel="cycles per low pixel")
 right.legend()
+
+# %%
+# The figure as a file.
+figure.savefig("two-resolutions.png", dpi=110)
+print("wrote two-resolutions.png")

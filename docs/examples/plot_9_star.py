@@ -52,3 +52,8 @@ stated, fitted = star.mean_mtf_nyquist, free.mean_mtf_nyquist
 print(f"mean MTF at Nyquist: {stated} with stated levels, {fitted} without")
 for check in free.failed_checks:
     print(f"{check.name}: {check.message}")
+
+# %%
+# The figure as a file.
+figure.savefig("star.png", dpi=110)
+print("wrote star.png")

@@ -57,3 +57,8 @@ scatter.set(
     xlim=(-0.2, 0.2),
 )
 scatter.axvline(0.0, color="0.6", linewidth=1)
+
+# %%
+# The figure as a file.
+figure.savefig("landscape.png", dpi=110)
+print("wrote landscape.png")

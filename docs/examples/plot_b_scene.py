@@ -73,3 +73,8 @@ histogram.axvline(median, color="tab:orange", label=f"median {median:.4f}")
 histogram.axvline(true, color="k", linestyle="--", label=f"truth {true:.4f}")
 histogram.set(xlabel="MTF at Nyquist", ylabel="edges", title="How sharp the edges are")
 histogram.legend(loc="upper left", bbox_to_anchor=(0.08, 1.0))
+
+# %%
+# The figure as a file.
+figure.savefig("scene.png", dpi=110)
+print("wrote scene.png")

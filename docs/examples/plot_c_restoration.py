@@ -61,3 +61,8 @@ proof = ac.verify_restoration(
 )
 for edge in proof.edges:
     print(f"MTF at Nyquist: before {edge.before}, predicted {edge.predicted}, found {edge.after}")
+
+# %%
+# The figure as a file.
+figure.savefig("restoration.png", dpi=110)
+print("wrote restoration.png")

@@ -61,3 +61,8 @@ for change in unaware.changes:
 
 figure = trend_figure(trend, limit=0.2)
 folder.cleanup()
+
+# %%
+# The figure as a file.
+figure.savefig("sensor-year.png", dpi=110)
+print("wrote sensor-year.png")

@@ -12,6 +12,7 @@ from sqlalchemy import event
 
 from acutance.archive import Archive, ImageCorrection
 from acutance.archive.exchange.correction_files import read_correction_file
+from acutance.archive.image_corrections import CorrectedImage
 from acutance.errors import ArchiveError, OptionError
 from acutance.targets.record import Record
 
@@ -351,3 +352,9 @@ def test_two_bands_do_not_become_one(archive: Archive, in_band: Any) -> None:
     with pytest.raises(OptionError, match=r"/images/0\.tif was measured in bands 1 and 2"):
         archive.correct_images([ImageCorrection(image="*.tif", band="pan")])
     assert archive.measurements()["band"].tolist() == [None] * 3
+
+
+def test_a_clock_that_was_wrong_by_seconds_is_seen_to_change() -> None:
+    before, after = (datetime(2026, 5, 1, 10, 20, second, tzinfo=UTC) for second in (0, 10))
+    change = CorrectedImage(1, "a.tif", {"acquired": (before, after)}, 1, 0, 0)
+    assert "2026-05-01 10:20 → 2026-05-01 10:20:10" in change.summary

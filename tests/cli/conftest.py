@@ -1,15 +1,10 @@
-"""A small simulated edge on disk, and the command line run inside the test."""
-
-from functools import cache
+"""A small simulated edge on disk, and what command lines are held to."""
 
 import numpy as np
 import pytest
 from jsonschema import Draft202012Validator
-from typer.main import get_command
-from typer.testing import CliRunner
 
 from acutance import optics, simulate
-from acutance.cli.app import app
 from acutance.raster import write_geotiff
 from acutance.report import measurement_schema
 
@@ -34,19 +29,6 @@ def site_image(tmp_path_factory):
     path = tmp_path_factory.mktemp("images") / "site.tif"
     write_geotiff(path, scene.image.astype(np.float32), gsd_m=0.7)
     return str(path)
-
-
-@pytest.fixture(scope="session")
-def acutance():
-    """Run a command line; the result has .exit_code, .stdout and .stderr."""
-
-    def run(*words):
-        return CliRunner().invoke(app, [str(word) for word in words])
-
-    # The runner builds all commands anew for every line, which takes longer than most lines do.
-    with pytest.MonkeyPatch.context() as patched:
-        patched.setattr("typer.testing._get_command", cache(get_command), raising=False)
-        yield run
 
 
 @pytest.fixture

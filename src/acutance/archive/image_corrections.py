@@ -190,7 +190,8 @@ class CorrectedImage:
 
 def _word(value: Any) -> str:
     if isinstance(value, datetime):
-        return f"{value.astimezone(UTC):%Y-%m-%d %H:%M}"
+        time = value.astimezone(UTC)
+        return f"{time:%Y-%m-%d %H:%M:%S}" if time.second else f"{time:%Y-%m-%d %H:%M}"
     return "–" if value is None else f"{value:g}" if isinstance(value, float) else str(value)
 
 
