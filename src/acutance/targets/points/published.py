@@ -311,9 +311,7 @@ def _gaussian(p: Floats, x: Floats, y: Floats) -> Floats:
     return np.asarray(p[0] * np.exp(-0.5 * (((x - p[1]) / p[3]) ** 2 + ((y - p[2]) / p[4]) ** 2)))
 
 
-def _fit_gaussian(
-    x: Floats, y: Floats, value: Floats, noise: float = 0.0
-) -> tuple[Floats, Floats]:
+def _fit_gaussian(x: Floats, y: Floats, value: Floats, noise: float = 0.0) -> tuple[Floats, Floats]:
     """The Gaussian with a bias nearest to values, from one of peak 1 at 0, and its covariance.
 
     `noise` is the least standard deviation of the values.
