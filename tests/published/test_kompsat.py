@@ -73,10 +73,31 @@ def test_smoothing_spline_costs_its_closed_form_at_nyquist(rows):
 def test_start_points_stand_at_the_feet_of_the_lsf():
     x = np.linspace(-8, 8, 3000)
     y = gaussian_pixel_esf(x)
-    start, stop = start_points(x, y, np.ones_like(x), -8.0, 8.0, 0.98)
+    start, stop = start_points(x, y, np.ones_like(x), -8.0, 8.0, 0.98, "bend")
     assert start == pytest.approx(-stop, abs=0.06)
     # 97 % of the rise lies between the two feet of this LSF.
     assert 0.9 < stop < 1.2
+
+
+def test_start_points_of_the_draft_are_the_inflection_points_of_the_lsf():
+    """Step 7a: the second derivative of the LSF is zero there, at one sigma of a Gaussian."""
+    x = np.linspace(-8, 8, 3000)
+    y = 0.5 * (1 + np.vectorize(math.erf)(x / (0.6 * math.sqrt(2))))
+    start, stop = start_points(x, y, np.ones_like(x), -8.0, 8.0, 0.98)
+    assert (start, stop) == pytest.approx((-0.6, 0.6), abs=0.04)
+    assert KompsatOptions().start == "inflection"
+
+
+@pytest.mark.parametrize(
+    ("sigma_px", "low", "high"), [(0.5, 0.0, 0.006), (0.6, -0.02, -0.005), (0.8, -0.26, -0.12)]
+)
+def test_inflection_points_cut_the_wings_of_wide_systems(sigma_px, low, high):
+    trimmed = edge_band(lambda s: gaussian_pixel_esf(s, sigma_px), angle_deg=7.7, shape=(60, 60))
+    drafted, bend = (
+        kompsat_2014(trimmed, KompsatOptions(start=at, replicates=0)).response.mtf_nyquist.value
+        for at in ("inflection", "bend")
+    )
+    assert low < drafted / bend - 1 < high
 
 
 def test_draft_centres_the_rer_on_the_peak_and_half_is_available():
@@ -100,7 +121,7 @@ def test_draft_centres_the_rer_on_the_peak_and_half_is_available():
 
 
 def test_a_parametric_esf_is_centred_on_half():
-    response = kompsat_2014(edge_band(), KompsatOptions(esf="fermi")).response
+    response = kompsat_2014(edge_band(), KompsatOptions(esf="fermi", start="bend")).response
     assert response.rer_centre == "half"
     # One Fermi function is not a Gaussian with a pixel: +5 % at Nyquist.
     assert response.mtf_nyquist.value / gaussian_pixel_mtf(0.5) == pytest.approx(1.05, abs=0.02)
@@ -112,7 +133,7 @@ def test_dividing_by_the_cosine_costs_what_it_must_at_20_degrees(sigma_px, loss)
         return gaussian_pixel_esf(s, sigma_px)
 
     trimmed = edge_band(esf, angle_deg=20.0, shape=(400, 60))
-    stiff = {"replicates": 0, "smoothness": 0.999}
+    stiff = {"replicates": 0, "smoothness": 0.999, "start": "bend"}
     drafted = kompsat_2014(trimmed, KompsatOptions(distance="as-drafted", **stiff)).response
     normal = kompsat_2014(trimmed, KompsatOptions(**stiff)).response
     truth = gaussian_pixel_mtf(0.5, sigma_px)
@@ -126,8 +147,9 @@ def test_plateaus_that_end_too_soon_are_refused():
     def wide(s):
         return gaussian_pixel_esf(s, 1.5)
 
+    trimmed = edge_band(wide, shape=(40, 9), angle_deg=3.0, offset_px=0.0)
     with pytest.raises(SupportError, match="use a wider region"):
-        kompsat_2014(edge_band(wide, shape=(40, 9), angle_deg=3.0, offset_px=0.0))
+        kompsat_2014(trimmed, KompsatOptions(start="bend"))
 
 
 @pytest.mark.parametrize(

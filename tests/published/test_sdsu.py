@@ -6,11 +6,15 @@ import numpy as np
 import pytest
 from closed_form_edge import edge_band, gaussian_pixel_mtf
 
+import acutance as ac
 from acutance import simulate
 from acutance.errors import OptionError, PhaseError, SupportError
 from acutance.targets.straight.pixels import EdgePixels
 from acutance.targets.straight.published import SdsuOptions, sdsu_2005
-from acutance.targets.straight.published.edge_location import fermi_locations
+from acutance.targets.straight.published.edge_location import (
+    fermi_locations,
+    fermi_sum_locations,
+)
 from acutance.targets.straight.published.local_polynomial import modified_savitzky_golay
 
 NYQUIST = 0.5
@@ -76,6 +80,40 @@ def test_fermi_location_is_exact_for_a_fermi_edge():
     np.testing.assert_allclose(found, centre, atol=1e-6)
 
 
+def test_sum_of_fermi_functions_is_exact_for_edges_that_shoot_unequally():
+    rng = np.random.default_rng(3)
+    centre = 20 + rng.uniform(-0.5, 0.5, 30)
+    u = (np.arange(40) - centre[:, None]) / 0.45
+    rows = 300 + 900 * sum(
+        height / (1 + np.exp(offset - u)) for height, offset in ((1.3, 0), (-0.1, -4), (-0.2, 4))
+    )
+    expected = centre + rng.normal(0, 0.2, 30)
+    np.testing.assert_allclose(fermi_sum_locations(rows, expected, 0.6), centre, atol=1e-5)
+    assert np.ptp(fermi_locations(rows, expected, 0.6) - centre) > 0.01
+
+
+@pytest.mark.parametrize(("rows", "one_deg", "sum_deg"), [(20, 0.2, 0.08), (40, 0.06, 0.02)])
+def test_sum_places_edges_of_sharpened_products(rows, one_deg, sum_deg):
+    """QuickBird report, 3.3.1: what the sum is for; without lobes one function is as good."""
+    optics = ac.optics
+    blurred = [optics.Gaussian(0.5), optics.Detector()]
+
+    def largest_error(sensor, location):
+        errors = []
+        for angle_deg in (5.3, 6.0, 7.7):
+            image, truth = simulate.edge(sensor, angle_deg=angle_deg, shape=(rows, 40))
+            trimmed = EdgePixels(image, truth.line, truth.dark, truth.bright, 0.5, 0.0)
+            options = SdsuOptions(order=2, location=location, replicates=0)
+            line = sdsu_2005(trimmed, options).line
+            errors.append(abs(line.normal_deg - truth.line.normal_deg))
+        return max(errors)
+
+    sharpened = ac.Sensor([*blurred, optics.Sharpening.both_axes(0.3)])
+    assert largest_error(sharpened, "fermi") > one_deg
+    assert largest_error(sharpened, "fermi-sum") < sum_deg
+    assert largest_error(ac.Sensor(blurred), "fermi-sum") < 0.07
+
+
 def test_places_do_not_depend_on_the_unit():
     """Narrow edges: all but one or two of the seven pixels are on a plateau."""
     rng = np.random.default_rng(1)
@@ -110,7 +148,13 @@ def test_a_shorter_trim_measures_that_band():
 
 @pytest.mark.parametrize(
     "wrong",
-    [{"order": 3}, {"distance": "column"}, {"trim_px": 1.0}, {"smoothing_points": 8}],
+    [
+        {"order": 3},
+        {"distance": "column"},
+        {"trim_px": 1.0},
+        {"location": "cubic"},
+        {"smoothing_points": 8},
+    ],
 )
 def test_meaningless_options_are_refused(wrong):
     with pytest.raises(OptionError, match="found"):

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import acutance as ac
 from acutance import simulate
 from acutance.errors import NoEdgeError, OptionError, PhaseError, SupportError
 from acutance.optics.preset import preset
@@ -198,3 +199,14 @@ def test_printed_corrections_of_the_tarp_width(old_m, new_m, old, new, percent):
     gain = float(width_error_gain(old_m / 2.8, new_m / 2.8, 0.5))
     assert round(100 * (gain - 1), 2) == percent
     assert round(old * gain, 4) == pytest.approx(new, abs=1.01e-4)
+
+
+def test_either_edge_of_a_pulse_gives_the_same_mtf():
+    """The report places the left edges; here the edge is where the line of the search lies."""
+    sensor = ac.Sensor([ac.optics.Gaussian(0.4), ac.optics.Detector()])
+    image, _ = ac.simulate.pulse(sensor, width_px=3.0, angle_deg=6.0)
+    plain, mirrored = (
+        ac.measure_pulse(one, width_px=3.0, method="sdsu-2005") for one in (image, image[:, ::-1])
+    )
+    assert plain.line.normal[0] * mirrored.line.normal[0] < 0
+    assert plain.mtf_nyquist.value == pytest.approx(mirrored.mtf_nyquist.value, abs=1e-4)

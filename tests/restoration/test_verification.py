@@ -167,3 +167,17 @@ def test_an_image_without_edges_says_how_to_name_some(pair):
     flat = ac.Image.from_array(np.random.default_rng(2).normal(100, 1, (120, 120)))
     with pytest.raises(ac.NoEdgeError, match="name regions with edges"):
         ac.verify_restoration(flat, flat, filter)
+
+
+def test_a_method_that_cuts_lobes_errs_by_what_its_deviation_says():
+    """The draft of KOMPSAT-3 keeps 1 px of plateau beyond the inflection points of the LSF."""
+    sensor = ac.Sensor([ac.optics.Gaussian(0.7), ac.optics.Detector()])
+    filter = ac.design_restoration(sensor, snr=100, noise_gain=2.2)
+    pixels, _ = ac.simulate.edge(
+        sensor, shape=(110, 110), angle_deg=7, snr=100, rng=np.random.default_rng(1)
+    )
+    pair = (ac.Image.from_array(one) for one in (pixels, ac.restore(pixels, filter)))
+    proof = ac.verify_restoration(*pair, filter, [(15, 15, 80, 80)], method="kompsat-2014")
+    (edge,) = proof.edges
+    assert edge.off > 0.07
+    assert abs(edge.deviations) < 2.2

@@ -36,8 +36,8 @@ CAUSES = {
     "kompsat-2014": "the smoothing spline and the difference of neighbours lower the MTF",
     "iso12233": "bins of a quarter of a pixel lower the MTF by 2.5 % at Nyquist",
     "fermi": "a sum of Fermi functions is not the shape of this sensor's edge",
-    "gaussian-2003": "a Gaussian stands for a blur seen through a pixel, which raises the MTF at "
-    "Nyquist by 5 to 8 %, and its interval leaves out the grass under the mirrors",
+    "gaussian-2003": "a Gaussian stands for a blur seen through a pixel, and its interval leaves "
+    "out the grass under the mirrors",
 }
 """Why a published method is off."""
 

@@ -20,7 +20,7 @@ to 40 degrees behind four sensors, two of them smeared along one axis, the large
 _SHARED_AND_OWN_ERROR: dict[str, tuple[float, float]] = {
     "spline": (0.0, 0.005),
     "sdsu-2005": (0.95, 0.006),
-    "kompsat-2014": (0.0, 0.03),
+    "kompsat-2014": (0.0, 0.05),
     "iso12233": (0.95, 0.004),
     "fermi": (0.0, 0.06),
 }

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import FigureBase
 
     from acutance.targets.points import PointsMeasurement
+    from acutance.targets.points.detect import RejectedSpot
     from acutance.targets.points.sources import PointSource, SourceStamp
 
 __all__ = ["points_panels"]
@@ -32,6 +33,8 @@ LABEL_STEP = 0.055
 """Of a number to its point, over half the width of the axes."""
 LABEL_SIDES = ((1, -0.6), (-1, -0.6), (1, 0.8), (-1, 0.8), (0, -1), (0, 1))
 """Where a number may stand, in such steps; rows go downwards."""
+NAME_PT = (50.0, 10.0)
+"""Width and height of the reason beside a cross."""
 BOX_PT = (12.5, 10.0)
 """Width and height of a number in its box, on the map."""
 BOX_SIDES = ((1.15, 0), (-1.15, 0), (0, -1.15), (0, 1.15), (0.9, -0.8), (-0.9, -0.8), (0.9, 0.8),
@@ -117,21 +120,40 @@ def _draw_places(axes: Axes, measurement: PointsMeasurement) -> None:
         _number_sources(axes, places, crosses)
     for one in plain[:MAX_REJECTED_SHOWN]:
         axes.plot(one.col, one.row, "x", markersize=6, color=VERMILION, markeredgewidth=1.3)
-        if len(plain) <= MAX_NAMED // 2:
-            axes.annotate(
-                one.reason, (one.col, one.row), (5, -8), textcoords="offset points", fontsize=6.5,
-                color=VERMILION,
-            )  # fmt: skip
+    if len(plain) <= MAX_NAMED // 2:
+        _name_rejected(axes, plain)
     axes.set_title(f"{len(places)} sources, {len(measurement.rejected)} rejected")
+
+
+def _name_rejected(axes: Axes, rejected: Sequence[RejectedSpot]) -> None:
+    """The reason beside each cross, but for one whose name would lie over another's."""
+    scale_pt = _pt_per_px(axes)
+    named: list[RejectedSpot] = []
+    for one in rejected:
+        if any(
+            scale_pt * abs(one.row - other.row) < NAME_PT[1]
+            and scale_pt * abs(one.col - other.col) < NAME_PT[0]
+            for other in named
+        ):
+            continue
+        named.append(one)
+        axes.annotate(
+            one.reason, (one.col, one.row), (5, -8), textcoords="offset points", fontsize=6.5,
+            color=VERMILION,
+        )  # fmt: skip
+
+
+def _pt_per_px(axes: Axes) -> float:
+    """Points of the page per pixel of a map. Pixels are square: one side of the axes limits it."""
+    box = axes.get_window_extent()
+    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+    scale = min(box.width / abs(right - left), box.height / abs(top - bottom))
+    return float(scale * 72 / axes.figure.dpi)
 
 
 def _number_sources(axes: Axes, places: Floats, crosses: Floats) -> None:
     """Numbers in boxes beside the circles at (row, col), legible on every ground."""
-    box = axes.get_window_extent()
-    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
-    # Pixels are square: one side of the axes limits the map.
-    scale_pt = min(box.width / abs(right - left), box.height / abs(top - bottom))
-    scale_pt *= 72 / axes.figure.dpi
+    scale_pt = _pt_per_px(axes)
     size = np.array(BOX_PT)
     found = labels_apart(
         places[:, ::-1] * scale_pt / size, BOX_SIDES, crosses[:, ::-1] * scale_pt / size

@@ -1,24 +1,26 @@
 """The impulse method of South Dakota State University: one Gaussian for an array of mirrors.
 
-Helder, Choi, Rangaswamy, "In-flight MTF measurement using edge, pulse and impulse methods"
-(QuickBird, 2003), 3.2 and 5.7 to 5.9; the same steps are those of Li et al., "On-orbit MTF
-estimation methods", 2.3:
+Helder, Choi, Rangaswamy, "Quickbird satellite in-orbit modulation transfer function (MTF)
+measurement using edge, pulse and impulse methods for summer 2003" (2005), 3.2 and 5.7 to 5.9; the
+same steps are those of Li et al., "On-orbit MTF estimation methods", 2.3:
 
-1. every source gets a 2-D Gaussian (peak, place, two widths, bias) by least squares, first in a
-   window of 3 x 3 pixels with the bias held at the mean of its surroundings, then of 5 x 5;
-2. the sources are moved onto one another by their fitted peaks; as some are brighter than
-   others, each is scaled by its own peak above its own bias;
-3. one Gaussian is fitted to all samples together;
+1. every source gets a 2-D Gaussian (peak, place, two widths, bias) by least squares, from its
+   brightest pixel and the mean of its surroundings;
+2. the sources are moved onto one another by their fitted places;
+3. one Gaussian is fitted to the pixels of all of them together, in windows of 3 x 3 pixels. The
+   ring around, to 5 x 5, "was effectively a 'bias' that was not used in the calculation of model
+   parameters";
 4. its slices through the peak are the PSF across and along, their Fourier transforms the MTF.
 
 The model is not integrated over the pixel, knows no tails, and takes the slice for the LSF: exact
-for a Gaussian whose samples are points, biased for everything else.
+for a Gaussian whose samples are points, biased for everything else. The report does not print the
+window of step 1, which is that of step 3 here. Its mirrors were equally bright but for what the
+atmosphere did: sources that are not are an option of this package, not of the report.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -50,20 +52,22 @@ class SdsuMirrorsOptions:
 
     Parameters
     ----------
-    first_window_px : int
-        Side of the window the fit of a source starts with.
     window_px : int
-        Side of the window of the final fits.
+        Side of the window whose pixels determine the Gaussians. The report's is 3, its 5 is
+        drawn and not fitted.
+    scaled : bool
+        Whether each source is scaled by its own peak above its own bias before all are fitted.
+        The report moves places alone. For sources of unequal brightness; among equal ones, half
+        way between pixels, sharp Gaussians with too high a peak spoil the sum.
     """
 
-    first_window_px: int = 3
-    window_px: int = 5
+    window_px: int = 3
+    scaled: bool = False
 
     def __post_init__(self) -> None:
         require_types(self)
-        for name, value in vars(self).items():
-            if value not in (3, 5, 7, 9):
-                raise OptionError(f"{name} is {value}: windows have 3, 5, 7 or 9 pixels")
+        if self.window_px not in (3, 5, 7, 9):
+            raise OptionError(f"window_px is {self.window_px}: windows have 3, 5, 7 or 9 pixels")
 
 
 @dataclass(frozen=True)
@@ -127,11 +131,11 @@ class AlignedFit:
     sigma_x_px, sigma_y_px : float
         Its standard deviations along the rows and down the columns of the image.
     rmse : float
-        Root mean square residual, in image units at the mean peak.
+        Root mean square residual, in image units.
     background_mean, background_std : float
         Level and standard deviation of the background around the sources.
     mean_peak : float
-        Of the sources' own Gaussians.
+        Peak of that Gaussian above its bias, in image units.
     """
 
     sigma_x_px: float
@@ -143,7 +147,7 @@ class AlignedFit:
 
     @property
     def peak_over_background(self) -> float:
-        """What the report calls SNR in its Figure 5.17: mean peak over the mean background."""
+        """What the report calls SNR in its Figure 5.17: peak over the mean background."""
         return self.mean_peak / self.background_mean if self.background_mean > 0 else math.inf
 
     def to_dict(self) -> dict[str, float | None]:
@@ -161,7 +165,8 @@ class PublishedMirrors:
     mirrors : tuple of MirrorFit
     psf : GaussianPsf
     x, y, value, residual : (n,) arrays
-        The aligned samples, as shares of their peaks, and what the pooled Gaussian leaves.
+        The aligned samples above the bias and what the pooled Gaussian leaves of them, as shares
+        of its peak.
     aligned : AlignedFit
     left_out : tuple of RejectedSpot
         Sources without a Gaussian of their own, in pixels of the image.
@@ -206,23 +211,37 @@ def sdsu_2003_mirrors(
             continue
         rows, cols, values = _window(image, (found.row, found.col), chosen.window_px)
         mirrors.append(found)
-        shares = (values - found.bias) / found.peak
-        samples.append((cols - found.col, rows - found.row, shares))
+        samples.append((cols - found.col, rows - found.row, values))
     if not mirrors:
         raise SupportError(
             f"none of {places.shape[0]} sources has a Gaussian of its own in a window of "
             f"{chosen.window_px} x {chosen.window_px} pixels, the first one because "
             f"{left_out[0].message}: choose other sources or method psf-fit"
         )
-    x, y, value = (np.concatenate(part) for part in zip(*samples, strict=True))
-    psf, residual = _pool(x, y, value)
     around = np.concatenate([one[np.isfinite(one)] for one in backgrounds])
-    peak = float(np.mean([one.peak for one in mirrors]))
+    x, y, values = (np.concatenate(part) for part in zip(*samples, strict=True))
+    level, height = _levels(mirrors, values, float(around.mean()), chosen)
+    unit = float(np.mean(height))
+    psf, peak, bias, residual = _pool(x, y, (values - level) / height)
+    value = ((values - level) / height - bias) / peak
     aligned = AlignedFit(
-        psf.sigma_x_px, psf.sigma_y_px, peak * float(np.sqrt(np.mean(residual**2))),
-        float(around.mean()), float(around.std()), peak,
+        psf.sigma_x_px, psf.sigma_y_px, unit * float(np.sqrt(np.mean(residual**2))),
+        float(around.mean()), float(around.std()), unit * peak,
     )  # fmt: skip
-    return PublishedMirrors(tuple(mirrors), psf, x, y, value, residual, aligned, tuple(left_out))
+    return PublishedMirrors(
+        tuple(mirrors), psf, x, y, value, residual / peak, aligned, tuple(left_out)
+    )
+
+
+def _levels(
+    mirrors: list[MirrorFit], values: Floats, background: float, options: SdsuMirrorsOptions
+) -> tuple[Floats, Floats]:
+    """Zero and unit of every pixel in the common fit: of all sources, or each source's own."""
+    if options.scaled:
+        biases, peaks = np.array([(one.bias, one.peak) for one in mirrors]).T
+        size = options.window_px**2
+        return np.repeat(biases, size), np.repeat(peaks, size)
+    return np.full(values.size, background), np.full(values.size, values.max() - background)
 
 
 def _window(image: Floats, place: tuple[float, float], side: int) -> tuple[Floats, Floats, Floats]:
@@ -260,21 +279,13 @@ def _fit_mirror(
     if not unit > 0:
         return rejected("faint", "its brightest pixel is no brighter than its surroundings")
     middle = (float(rows[brightest]), float(cols[brightest]))
-    windows = [
-        _window(image, middle, side) for side in (options.first_window_px, options.window_px)
-    ]
-    if not all(np.isfinite(values).all() for _, _, values in windows):
+    rows, cols, values = _window(image, middle, options.window_px)
+    if not np.isfinite(values).all():
         return rejected("edge", _INCOMPLETE)
     # In shares of its own brightest pixel and about that, lest the unit and the place count.
-    (y, x, value), (wide_y, wide_x, wide_value) = (
-        (rows - middle[0], cols - middle[1], (values - level) / unit)
-        for rows, cols, values in windows
-    )
-    start = np.array([1.0, 0.0, 0.0, 0.7, 0.7])
-    first = _least_squares(lambda p: _gaussian(p, x, y) - value, start)
-    final, covariance = _with_covariance(
-        lambda p: _gaussian(p[:5], wide_x, wide_y) + p[5] - wide_value, np.append(first, 0.0)
-    )
+    x, y, value = cols - middle[1], rows - middle[0], (values - level) / unit
+    # Nine pixels leave three to tell their noise by: the surroundings know it better.
+    final, covariance = _fit_gaussian(x, y, value, float(known.std()) / unit)
     peak, col, row, *_, bias = final.tolist()
     std = np.sqrt(np.maximum(covariance.diagonal(), 0.0))
     widths = np.abs(final[3:5])
@@ -300,16 +311,20 @@ def _gaussian(p: Floats, x: Floats, y: Floats) -> Floats:
     return np.asarray(p[0] * np.exp(-0.5 * (((x - p[1]) / p[3]) ** 2 + ((y - p[2]) / p[4]) ** 2)))
 
 
-def _least_squares(residual: Callable[[Floats], Floats], start: Floats) -> Floats:
-    scale = np.maximum(np.abs(start), 0.1)
-    return np.asarray(least_squares(residual, start, x_scale=scale, method="lm").x)
+def _fit_gaussian(x: Floats, y: Floats, value: Floats, noise: float = 0.0) -> tuple[Floats, Floats]:
+    """The Gaussian with a bias nearest to values, from one of peak 1 at 0, and its covariance.
 
-
-def _with_covariance(residual: Callable[[Floats], Floats], start: Floats) -> tuple[Floats, Floats]:
-    scale = np.maximum(np.abs(start), 0.1)
-    found = least_squares(residual, start, x_scale=scale, method="lm")
+    `noise` is the least standard deviation of the values.
+    """
+    start = np.array([1.0, 0.0, 0.0, 0.7, 0.7, 0.0])
+    found = least_squares(
+        lambda p: _gaussian(p[:5], x, y) + p[5] - value,
+        start,
+        x_scale=np.maximum(np.abs(start), 0.1),
+        method="lm",
+    )
     freedom = max(found.fun.size - start.size, 1)
-    variance = float(found.fun @ found.fun) / freedom
+    variance = max(float(found.fun @ found.fun) / freedom, noise**2)
     # What is not determined has a deviation without bound; a pseudo-inverse would call it exact.
     size = np.maximum(np.linalg.norm(found.jac, axis=0), 1e-60)
     _, power, axes = np.linalg.svd(found.jac / size, full_matrices=False)
@@ -317,13 +332,12 @@ def _with_covariance(residual: Callable[[Floats], Floats], start: Floats) -> tup
     return np.asarray(found.x, float), np.asarray(variance * root.T @ root)
 
 
-def _pool(x: Floats, y: Floats, value: Floats) -> tuple[GaussianPsf, Floats]:
-    """One Gaussian for all aligned samples, and what it leaves."""
-    found, covariance = _with_covariance(
-        lambda p: _gaussian(p[:5], x, y) + p[5] - value, np.array([1.0, 0.0, 0.0, 0.7, 0.7, 0.0])
-    )
+def _pool(x: Floats, y: Floats, value: Floats) -> tuple[GaussianPsf, float, float, Floats]:
+    """One Gaussian for all aligned samples, its peak and bias, and what it leaves."""
+    found, covariance = _fit_gaussian(x, y, value)
     power, axes = np.linalg.eigh(covariance[3:5, 3:5])
     factor = axes * np.sqrt(np.maximum(power, 0.0))
     rows = (tuple(factor[0].tolist()), tuple(factor[1].tolist()))
     psf = GaussianPsf(abs(float(found[3])), abs(float(found[4])), rows)
-    return psf, value - _gaussian(found[:5], x, y) - found[5]
+    peak, bias = float(found[0]), float(found[5])
+    return psf, peak, bias, value - _gaussian(found[:5], x, y) - bias

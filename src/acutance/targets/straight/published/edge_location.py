@@ -1,4 +1,4 @@
-"""Placing the edge in each row: cubic inflection, Fermi function, centroid of the derivative.
+"""Placing the edge in each row: cubic inflection, Fermi functions, centroid of the derivative.
 
 Every function takes rows (n, cols) that rise to the right, the column where the edge of each
 row is expected (n,) and the Gaussian width of the edge in pixels, and returns columns (n,),
@@ -13,10 +13,17 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.targets.straight.published.windows import tukey_window
 
-__all__ = ["centroid_locations", "cubic_locations", "fermi_locations"]
+__all__ = [
+    "centroid_locations",
+    "cubic_locations",
+    "fermi_locations",
+    "fermi_sum_locations",
+]
 
 _SEARCH_PX = 2.0
 _FERMI_POINTS = 7
+_FERMI_SUM_POINTS = 13
+_TERM_OFFSETS = np.array([0.0, -4.0, 4.0])
 _FERMI_STEPS = 40
 _MAX_DAMPING = 1e6
 _NARROWEST_PX, _WIDEST_PX = 0.05, 5.0
@@ -59,29 +66,48 @@ def fermi_locations(value: Floats, expected: Floats, width_px: float) -> Floats:
 
     Generic sensor modeling (2005), section 2.3.2, with the equation as it must read:
     f(x) = a / (exp((x - b) / c) + 1) + d. The printed one has the 1 inside the exponent and
-    grows without bound. All rows are fitted together by Levenberg-Marquardt steps in
-    (b, log c, a, d). A row whose centre leaves its seven pixels shows no edge.
+    grows without bound. A row whose centre leaves its seven pixels shows no edge.
     """
+    return _fermi_centres(value, expected, width_px, _FERMI_POINTS, terms=1)
+
+
+def fermi_sum_locations(value: Floats, expected: Floats, width_px: float) -> Floats:
+    """Symmetry point b of a sum of three Fermi functions fitted to 13 pixels.
+
+    QuickBird report (2005), section 3.3.1: for products with MTF compensation, whose edges under-
+    and overshoot by different amounts, "a summation of Fermi functions". It prints neither their
+    number nor the pixels; here one function about b has two of its own width c, of either sign,
+    4 c before and behind it.
+    """
+    return _fermi_centres(value, expected, width_px, _FERMI_SUM_POINTS, terms=3)
+
+
+def _fermi_centres(
+    value: Floats, expected: Floats, width_px: float, count: int, terms: int
+) -> Floats:
+    """Centres of Fermi functions fitted to `count` pixels about the largest difference."""
     left = _largest_rise(value, expected)
     rise = np.nan_to_num(_cut(np.diff(value, axis=1), left - 1, 3), nan=-np.inf)
     centre = left + (rise[:, 2] >= rise[:, 0])
-    half = _FERMI_POINTS // 2
-    points = _cut(value, centre - half, _FERMI_POINTS)
+    points = _cut(value, centre - count // 2, count)
     usable = np.isfinite(points).all(axis=1)
     place = np.full(left.size, np.nan)
-    place[usable] = centre[usable] + _fit_fermi_rows(points[usable], width_px)
-    return np.where(np.abs(place - centre) <= half, place, np.nan)
+    place[usable] = centre[usable] + _fit_fermi_rows(points[usable], width_px, terms)
+    return np.where(np.abs(place - centre) <= _FERMI_POINTS // 2, place, np.nan)
 
 
-def _fit_fermi_rows(points: Floats, width_px: float) -> Floats:
-    """Centre of a rising Fermi function in every row of `points` (n, 7), from the middle pixel."""
+def _fit_fermi_rows(points: Floats, width_px: float, terms: int) -> Floats:
+    """Centre of rising Fermi functions in every row of `points`, from the middle pixel.
+
+    All rows are fitted together by Levenberg-Marquardt steps.
+    """
     x = np.arange(points.shape[1]) - points.shape[1] // 2
     low, height = points.min(axis=1), np.ptp(points, axis=1)
     # In shares of its height every row is the same problem in any unit and on any level.
     points = (points - low[:, None]) / np.where(height > 0, height, 1.0)[:, None]
-    start_width = np.full(low.size, np.log(np.clip(0.55 * width_px, 0.1, 2.0)))
-    nothing = np.zeros_like(low)
-    unknown = np.stack((nothing, start_width, (height > 0).astype(float), nothing), axis=1)
+    unknown = np.zeros((low.size, 3 + terms))
+    unknown[:, 1] = np.log(np.clip(0.55 * width_px, 0.1, 2.0))
+    unknown[:, 3] = height > 0
     damping = np.full(low.size, 1e-3)
     cost = np.sum((points - _fermi_rows(x, unknown)[0]) ** 2, axis=1)
     settled = np.zeros(low.size, dtype=bool)
@@ -91,7 +117,7 @@ def _fit_fermi_rows(points: Floats, width_px: float) -> Floats:
         gradient = np.einsum("npi,np->ni", jacobian, points - model)
         scale = np.einsum("nii->ni", normal)
         scale = np.maximum(scale, 1e-12 * scale.max(axis=1, keepdims=True))
-        damped = normal + (damping[:, None] * scale)[:, :, None] * np.eye(4)
+        damped = normal + (damping[:, None] * scale)[:, :, None] * np.eye(3 + terms)
         trial = unknown + np.linalg.solve(damped, gradient[:, :, None])[:, :, 0]
         trial[:, 1] = np.clip(trial[:, 1], np.log(_NARROWEST_PX), np.log(_WIDEST_PX))
         trial_cost = np.sum((points - _fermi_rows(x, trial)[0]) ** 2, axis=1)
@@ -107,13 +133,14 @@ def _fit_fermi_rows(points: Floats, width_px: float) -> Floats:
 
 
 def _fermi_rows(x: Floats, unknown: Floats) -> tuple[Floats, Floats]:
-    """Values (n, p) and Jacobian (n, p, 4) of rising Fermi functions (b, log c, a, d)."""
-    b, log_c, a, d = (unknown[:, i, None] for i in range(4))
+    """Values (n, p) and Jacobian (n, p, k) of Fermi functions (b, log c, d, a of every term)."""
+    b, log_c, d = (unknown[:, i, None] for i in range(3))
+    height = unknown[:, None, 3:]
     u = (x - b) / np.exp(log_c)
-    rise = 0.5 * (1.0 + np.tanh(u / 2))
-    steep = a * rise * (1.0 - rise)
-    jacobian = np.stack((-steep / np.exp(log_c), -steep * u, rise, np.ones_like(rise)), axis=2)
-    return a * rise + d, jacobian
+    rise = 0.5 * (1.0 + np.tanh((u[:, :, None] - _TERM_OFFSETS[: height.shape[2]]) / 2))
+    steep = np.sum(height * rise * (1.0 - rise), axis=2)
+    common = np.stack((-steep / np.exp(log_c), -steep * u, np.ones_like(u)), axis=2)
+    return np.sum(height * rise, axis=2) + d, np.concatenate((common, rise), axis=2)
 
 
 def centroid_locations(value: Floats, expected: Floats, width_px: float) -> Floats:

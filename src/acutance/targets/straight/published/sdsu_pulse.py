@@ -220,6 +220,11 @@ def sdsu_2005_pulse(trimmed: PulsePixels, options: SdsuPulseOptions = _DEFAULT) 
     window every 0.05 px, trim to 10 px, Fourier transform over that of a pulse of the stated
     width.
 
+    The report places the left edges of its pulse, which were aligned by a transit. Here it is the
+    edge at which the given line lies, turned so that it rises: for a pulse with parallel borders
+    and one level both give the same. Its sum of Fermi functions for products with MTF compensation
+    (see `SdsuOptions`) takes more pixels than a pulse of 3 px has and is left to edges.
+
     The ratio is kept as it is: near the zeros of the pulse's spectrum, the multiples of
     1 / ratio_width_px, it has no meaning. The mean of the plateaus at both ends is subtracted
     from the profile first.
