@@ -12,10 +12,10 @@ import pytest
 
 import acutance as ac
 from acutance.archive import Archive, Entry, ImageEntry, TargetEntry
+from acutance.archive.mean_of_images import mean_of_images
 from acutance.archive.published import published_entries
 from acutance.archive.specification import Specification
 from acutance.archive.trends import Event, Series, fit_trend
-from acutance.archive.mean_of_images import mean_of_images
 from acutance.errors import NothingSelectedError, OptionError
 from acutance.report.archive import sensor_page, trend_figure, trend_page
 from acutance.report.archive.sensor_state import SeriesState, states_of
