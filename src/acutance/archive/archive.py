@@ -310,7 +310,7 @@ class Archive(Questions, RowsOfRuns):
         Raises
         ------
         OptionError
-            If a library is missing, or the place cannot be written.
+            If a library is missing, or the place cannot be written or is that of an archive.
         """
         from acutance.archive.exchange.exporting import export_entries
 
