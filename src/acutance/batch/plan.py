@@ -12,6 +12,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
+from acutance.batch.path_text import path_as_text
 from acutance.batch.plan_options import faults_of_plan
 from acutance.errors import OptionError
 from acutance.raster.document_faults import document_faults
@@ -181,7 +182,7 @@ class BatchPlan:
         """All of it, for JSON."""
         return {
             **{one.name: getattr(self, one.name) for one in fields(self)},
-            "images": list(self.images),
+            "images": [path_as_text(one) for one in self.images],
             "stated": [_set_values(one) for one in self.stated],
             "options": {kind: dict(one) for kind, one in self.options.items()},
         }
