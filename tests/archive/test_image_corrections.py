@@ -15,7 +15,7 @@ from acutance.archive.exchange.correction_files import read_correction_file
 from acutance.errors import ArchiveError, OptionError
 from acutance.targets.record import Record
 
-DAY = datetime(2027, 3, 1, 9, 30, tzinfo=UTC)
+DAY = datetime(2025, 3, 1, 9, 30, tzinfo=UTC)
 
 
 @pytest.fixture
@@ -34,12 +34,12 @@ def test_a_date_and_a_sensor_are_corrected_and_noted(filled: Archive) -> None:
     assert done[0].measurements == 2
     assert done[0].changes["sensor"] == ("QB02", "K3A")
     assert "sensor QB02 → K3A" in done[0].summary
-    found = filled.measurements(sensor="K3A", since="2027-03-01", until="2027-03-01")
+    found = filled.measurements(sensor="K3A", since="2025-03-01", until="2025-03-01")
     assert len(found) == 2
     sources = next(iter(filled.entries(image="1.tif"))).image.sources
     assert sources["sensor"].startswith("corrected on ")
     note = {one["column"]: one for one in sources["corrections"]}["acquired"]
-    assert (note["before"][:10], note["after"][:10]) == ("2026-01-02", "2027-03-01")
+    assert (note["before"][:10], note["after"][:10]) == ("2026-01-02", "2025-03-01")
     assert note["reason"] == "clock"
     assert filled.correct_images([wrong]) == []
 

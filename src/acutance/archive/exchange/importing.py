@@ -18,6 +18,7 @@ from acutance.archive.exchange.documents import Stated, entries_of
 from acutance.archive.exchange.jsonl import read_jsonl
 from acutance.archive.exchange.parquet import read_parquet
 from acutance.archive.identity import keys_of
+from acutance.archive.possible_values import require_possible
 from acutance.errors import OptionError
 
 __all__ = ["Imported", "import_files", "refused_files"]
@@ -140,7 +141,10 @@ def _readable(path: Path, stated: Stated, refused: dict[str, str]) -> Iterator[t
 def _entries(place: str, text: bytes | str, stated: Stated, refused: dict[str, str]) -> list[Entry]:
     """Entries of one text of JSON: all of them, or none."""
     try:
-        return list(entries_of(orjson.loads(text), stated))
+        found = list(entries_of(orjson.loads(text), stated))
+        for one in found:
+            require_possible(one)
+        return found
     except OptionError as error:
         refused[place] = str(error)
     except ValueError as error:
