@@ -16,7 +16,7 @@ from acutance.archive.exchange.parquet import write_parquet
 from acutance.archive.exchange.stac import write_stac
 from acutance.archive.runs import named_once
 from acutance.archive.selection import Selection
-from acutance.archive.stored_entries import select_ids, stored_entries
+from acutance.archive.stored_entries import select_ids, undamaged_entries
 from acutance.errors import OptionError
 
 __all__ = ["FORMATS", "export_entries"]
@@ -43,7 +43,7 @@ def export_entries(
     to: str,
     progress: Progress | None = None,
 ) -> int:
-    """Write what a selection means, and count it.
+    """Write what a selection means, and count it; a warning names damaged rows, left out.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def export_entries(
         raise OptionError(f"{path} cannot be written, there is no folder {path.parent}")
     _require_no_database(database, path)
     ids = select_ids(database, selection)
-    entries = _reported(named_once(stored_entries(database, ids)), len(ids), progress)
+    entries = _reported(named_once(undamaged_entries(database, ids)), len(ids), progress)
     return FORMATS[to](entries, path)
 
 
