@@ -351,3 +351,16 @@ def test_two_bands_do_not_become_one(archive: Archive, in_band: Any) -> None:
     with pytest.raises(OptionError, match=r"/images/0\.tif was measured in bands 1 and 2"):
         archive.correct_images([ImageCorrection(image="*.tif", band="pan")])
     assert archive.measurements()["band"].tolist() == [None] * 3
+
+
+def test_two_values_of_one_image_in_a_file_are_refused(tmp_path):
+    table = tmp_path / "twice.csv"
+    table.write_text(
+        "image,acquired,sensor\na.tif,2021-01-01,S1\nb.tif,2021-01-01,\na.tif,2022-01-01,S1\n"
+    )
+    words = r"line 2 and line 4: acquired of a\.tif is 2021-01-01.* and 2022"
+    with pytest.raises(OptionError, match=words):
+        read_correction_file(table)
+    # The same twice, parts of what is known, and a name below a pattern contradict nothing.
+    table.write_text("image,acquired,sensor\n*.tif,,S1\na.tif,2021-01-01,S2\na.tif,2021-01-01,\n")
+    assert len(read_correction_file(table)) == 3

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from codecs import BOM_UTF8
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -170,7 +171,8 @@ def _reader(path: Path) -> Read:
 
 
 def _read_json(path: Path) -> Iterator[tuple[str, bytes]]:
-    yield str(path), path.read_bytes()
+    # Editors on Windows write a byte order mark, which JSON has not.
+    yield str(path), path.read_bytes().removeprefix(BOM_UTF8)
 
 
 _READERS: Mapping[str, Read] = {
