@@ -145,9 +145,8 @@ def test_a_drift_is_not_taken_for_a_difference_of_methods() -> None:
     low, high = one.relative.interval()
     assert low < 0.02 < high
     assert one.difference.std > 0.0022
-    late = Columns({**rows.columns, "image_id": rows["image_id"],
-                    "acquired": np.where(is_new, rows["acquired"] + np.timedelta64(2000, "D"),
-                                         rows["acquired"])})  # fmt: skip
+    when = np.where(is_new, rows["acquired"], rows["acquired"] - np.timedelta64(2000, "D"))
+    late = Columns({**rows.columns, "image_id": rows["image_id"], "acquired": when})
     assert (
         "edge new took over from edge old"
         in only(compare_groups(late, "mtf_nyquist", "method")).summary

@@ -87,16 +87,17 @@ values = st.recursive(
     lambda inner: st.one_of(st.lists(inner, max_size=3), st.dictionaries(texts, inner, max_size=3)),
     max_leaves=6,
 )
-finite = st.one_of(st.none(), st.floats(-180, 180))
+zeniths = st.one_of(st.none(), st.floats(0, 90))
+azimuths = st.one_of(st.none(), st.floats(-180, 360))
 moments = st.datetimes(
-    datetime(1957, 10, 4), datetime(2199, 1, 1), timezones=st.just(UTC)
+    datetime(1957, 10, 4), datetime(2026, 1, 1), timezones=st.just(UTC)
 )  # fmt: skip
 images = st.builds(
     ImageEntry,
     path=st.one_of(st.none(), texts), sensor=st.one_of(st.none(), texts),
     level=st.one_of(st.none(), texts), acquired=moments,
     gsd_m=st.one_of(st.none(), st.tuples(st.floats(0.1, 100), st.floats(0.1, 100))),
-    view_zenith_deg=finite, sun_azimuth_deg=finite,
+    view_zenith_deg=zeniths, sun_azimuth_deg=azimuths,
     sources=st.dictionaries(texts, values, max_size=3),
 )  # fmt: skip
 targets = st.builds(

@@ -16,7 +16,7 @@ from acutance.archive.image_corrections import CorrectedImage
 from acutance.errors import ArchiveError, OptionError
 from acutance.targets.record import Record
 
-DAY = datetime(2027, 3, 1, 9, 30, tzinfo=UTC)
+DAY = datetime(2025, 3, 1, 9, 30, tzinfo=UTC)
 
 
 @pytest.fixture
@@ -35,12 +35,12 @@ def test_a_date_and_a_sensor_are_corrected_and_noted(filled: Archive) -> None:
     assert done[0].measurements == 2
     assert done[0].changes["sensor"] == ("QB02", "K3A")
     assert "sensor QB02 → K3A" in done[0].summary
-    found = filled.measurements(sensor="K3A", since="2027-03-01", until="2027-03-01")
+    found = filled.measurements(sensor="K3A", since="2025-03-01", until="2025-03-01")
     assert len(found) == 2
     sources = next(iter(filled.entries(image="1.tif"))).image.sources
     assert sources["sensor"].startswith("corrected on ")
     note = {one["column"]: one for one in sources["corrections"]}["acquired"]
-    assert (note["before"][:10], note["after"][:10]) == ("2026-01-02", "2027-03-01")
+    assert (note["before"][:10], note["after"][:10]) == ("2026-01-02", "2025-03-01")
     assert note["reason"] == "clock"
     assert filled.correct_images([wrong]) == []
 
@@ -358,3 +358,16 @@ def test_a_clock_that_was_wrong_by_seconds_is_seen_to_change() -> None:
     before, after = (datetime(2026, 5, 1, 10, 20, second, tzinfo=UTC) for second in (0, 10))
     change = CorrectedImage(1, "a.tif", {"acquired": (before, after)}, 1, 0, 0)
     assert "2026-05-01 10:20 → 2026-05-01 10:20:10" in change.summary
+
+
+def test_two_values_of_one_image_in_a_file_are_refused(tmp_path):
+    table = tmp_path / "twice.csv"
+    table.write_text(
+        "image,acquired,sensor\na.tif,2021-01-01,S1\nb.tif,2021-01-01,\na.tif,2022-01-01,S1\n"
+    )
+    words = r"line 2 and line 4: acquired of a\.tif is 2021-01-01.* and 2022"
+    with pytest.raises(OptionError, match=words):
+        read_correction_file(table)
+    # The same twice, parts of what is known, and a name below a pattern contradict nothing.
+    table.write_text("image,acquired,sensor\n*.tif,,S1\na.tif,2021-01-01,S2\na.tif,2021-01-01,\n")
+    assert len(read_correction_file(table)) == 3

@@ -33,6 +33,12 @@ def series(
     )  # fmt: skip
 
 
+def stepped(made: Series, size: float) -> Series:
+    """The same with a step before its last seven images."""
+    value = made.value + size * (np.arange(made.size) >= made.size - 7)
+    return replace(made, value=value)
+
+
 def at_least(limit: float, **changes: object) -> Requirement:
     return Requirement(metric="mtf_nyquist", minimum=limit, **changes)  # type: ignore[arg-type]
 
@@ -68,8 +74,19 @@ def test_the_three_words() -> None:
     json.dumps([one.to_dict() for one in (met, missed, near, below)], allow_nan=False)
 
 
-def test_a_probability_that_seems_to_contradict_the_mean_is_explained() -> None:
-    made = series(1, images=12)
+@pytest.mark.parametrize(
+    ("made", "why"),
+    [
+        # Among so few images no step is sought.
+        (series(1, images=3), "leave open how much they scatter"),
+        (series(1, images=12), "leave open how much they scatter"),
+        (stepped(series(3, images=24), 0.006), "a step is probable"),
+    ],
+    ids=["3", "12", "step"],
+)
+def test_a_probability_that_seems_to_contradict_the_mean_is_explained(
+    made: Series, why: str
+) -> None:
     density = fit_trend(made).mean(float(made.when[-1]), season=False)
     middle, median = density.estimate(0.0).value, density.quantile(0.5)
     assert abs(middle - median) > 1e-9
@@ -77,6 +94,7 @@ def test_a_probability_that_seems_to_contradict_the_mean_is_explained() -> None:
     assert between.probability is not None
     assert (between.probability > 0.5) == (median > middle)
     assert "the density is skewed" in between.summary
+    assert why in between.summary
     beside = check_requirement(at_least(0.5 * (middle + median) - 0.01), made)
     assert "skewed" not in beside.summary
 

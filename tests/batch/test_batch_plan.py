@@ -61,6 +61,13 @@ def test_a_server_stays_as_it_is(tmp_path):
     assert plan.archive == "postgresql+psycopg://user@host/db"
 
 
+@pytest.mark.parametrize("acquired", ["2150-01-01", date(1900, 1, 1), datetime(9999, 12, 31)])
+def test_a_stated_date_of_no_image_is_refused(acquired):
+    stated = {"acquired": acquired}
+    with pytest.raises(OptionError, match=r"1957-01-01 to 20.* are the days of images"):
+        plan_of({**NEEDED, "stated": stated}, "plan.toml")
+
+
 def test_all_faults_at_once():
     document = {
         "images": "*.tif",

@@ -86,3 +86,11 @@ def test_a_link_that_leads_nowhere_is_found_out_first(tmp_path):
     (tmp_path / "b.csv").symlink_to(os.devnull)
     with pytest.raises(OptionError, match="no ordinary file"):
         check_output("--csv", str(tmp_path / "b.csv"), (".csv",))
+
+
+def test_a_neighbour_of_the_name_of_a_part_stays(tmp_path):
+    own = tmp_path / f".a.csv.{os.getpid()}.part"
+    own.write_text("precious")
+    check_output("--csv", str(tmp_path / "a.csv"), (".csv",)).write("1")
+    assert own.read_text() == "precious"
+    assert sorted(one.name for one in tmp_path.iterdir()) == [own.name, "a.csv"]

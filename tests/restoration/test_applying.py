@@ -628,3 +628,12 @@ def test_what_was_not_compared_is_told(tmp_path, landscape, sharpening):
     )
     assert "filtered though the filter is of band 1: bands 2, 3" in every.notes
     assert every.to_dict()["notes"] == list(every.notes)
+
+
+def test_a_neighbour_of_the_name_of_a_part_stays(tmp_path, sharpening, landscape):
+    own = tmp_path / f"b.npy.{os.getpid()}.part"
+    own.write_text("precious")
+    np.save(tmp_path / "a.npy", landscape)
+    ac.restore(tmp_path / "a.npy", sharpening, out=tmp_path / "b.npy")
+    assert own.read_text() == "precious"
+    assert sorted(one.name for one in tmp_path.iterdir()) == ["a.npy", "b.npy", own.name]

@@ -21,6 +21,7 @@ from acutance.archive.connection import Database, insert_missing
 from acutance.archive.correction_notes import has_notes, share_corrections
 from acutance.archive.entry import Entry, ImageEntry, Kept, TargetEntry
 from acutance.archive.kept_keys import kept_keys
+from acutance.archive.possible_values import require_possible
 from acutance.archive.rows import EntryRows, image_row, rows_of, target_row
 from acutance.archive.runs import complete_runs, ids_of_runs, with_whole_runs
 from acutance.archive.tables import directions, documents, images, measurements, runs, targets
@@ -62,9 +63,9 @@ def add_entry(database: Database, entry: Entry, run: int | None = None) -> Kept:
     ArchiveError
         If it cannot be kept.
     OptionError
-        If it holds what no archive can, or there is no such run.
+        If it holds what no archive, image or target can, or there is no such run.
     """
-    rows = rows_of(entry)
+    rows = _checked_rows(entry)
     added = _write(database, [rows], run)
     number, key = database.read(lambda connection: _place_of(connection, rows))
     return Kept(number, key, bool(added))
@@ -99,7 +100,7 @@ def add_entries(
     ArchiveError
         If they cannot be kept; chunks before stay.
     OptionError
-        If one holds what no archive can, or there is no such run.
+        If one holds what no archive, image or target can, or there is no such run.
     """
     added, read = 0, 0
     with ThreadPoolExecutor(1) as writer:
@@ -116,6 +117,11 @@ def add_entries(
     return added
 
 
+def _checked_rows(entry: Entry) -> EntryRows:
+    require_possible(entry)
+    return rows_of(entry)
+
+
 def _write(database: Database, rows: Sequence[EntryRows], run: int | None) -> int:
     """Write rows in one transaction, in the order of their keys, and count those that are new."""
     by_key = {one.key: one for one in rows}
@@ -130,7 +136,7 @@ def _report(progress: Callable[[int], None] | None, read: int) -> None:
 
 def _chunks(entries: Iterable[Entry]) -> Iterator[list[EntryRows]]:
     """Rows of so many entries; no entry is held longer than it takes to make its rows."""
-    left = map(rows_of, with_whole_runs(entries))
+    left = map(_checked_rows, with_whole_runs(entries))
     while chunk := list(islice(left, CHUNK)):
         yield chunk
 

@@ -25,7 +25,7 @@ from acutance.archive.questions import Questions
 from acutance.archive.restored_images import restored_sources
 from acutance.archive.rows_of_runs import RowsOfRuns
 from acutance.archive.selection import Selection, SelectionWords
-from acutance.archive.stored_entries import select_ids, stored_entries
+from acutance.archive.stored_entries import select_ids, stored_entries, undamaged_entries
 from acutance.errors import OptionError
 from acutance.targets.measurement import Measurement
 from acutance.targets.record import Record
@@ -237,12 +237,15 @@ class Archive(Questions, RowsOfRuns):
     def entries(self, **selection: Unpack[SelectionWords]) -> Iterator[Entry]:
         """Measurements and rejections as they were added, with their images and targets.
 
+        Those whose documents are damaged are left out; a warning at the end names them.
+
         Parameters
         ----------
         **selection
             Filters, as of `measurements`.
         """
-        return stored_entries(self._database, select_ids(self._database, Selection.of(selection)))
+        ids = select_ids(self._database, Selection.of(selection))
+        return undamaged_entries(self._database, ids)
 
     def entry(self, number: int) -> Entry:
         """What was added under a number (`Kept.id`, or the column "id").
@@ -251,6 +254,8 @@ class Archive(Questions, RowsOfRuns):
         ------
         OptionError
             If there is none.
+        ArchiveError
+            If its document is damaged.
         """
         found = list(stored_entries(self._database, [number]))
         if not found:
@@ -310,7 +315,7 @@ class Archive(Questions, RowsOfRuns):
         Raises
         ------
         OptionError
-            If a library is missing, or the place cannot be written.
+            If a library is missing, or the place cannot be written or is that of an archive.
         """
         from acutance.archive.exchange.exporting import export_entries
 

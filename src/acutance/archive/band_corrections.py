@@ -74,12 +74,15 @@ def _numbers_of_bands(
     connection: Connection, image_ids: Collection[int]
 ) -> Iterator[tuple[int, int]]:
     """The image and the number of the band of all rows that have one."""
-    columns = measurements.c.image_id, measurements.c.rejected_values, documents.c.document
+    columns = (
+        measurements.c.id, measurements.c.image_id, measurements.c.rejected_values,
+        documents.c.document,
+    )  # fmt: skip
     joined = measurements.outerjoin(documents)
     for some in in_chunks(image_ids, _MANY):
         asked = select(*columns).select_from(joined).where(measurements.c.image_id.in_(some))
-        for image_id, values, document in connection.execute(asked):
-            stated = unpacked(document)["image"] if document is not None else values or {}
+        for row_id, image_id, values, document in connection.execute(asked):
+            stated = values or {} if document is None else unpacked(document, row_id)["image"]
             number = str(stated.get("band", ""))
             if number.isdecimal():
                 yield image_id, int(number)

@@ -5,13 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import date, datetime
+from numbers import Real
 from typing import Any
 
 from acutance.errors import OptionError
 from acutance.targets.record import Record
 from acutance.targets.target_result import Rejected
 
-__all__ = ["Entry", "ImageEntry", "Kept", "RunEntry", "TargetEntry"]
+__all__ = ["UNKNOWN_KIND", "Entry", "ImageEntry", "Kept", "RunEntry", "TargetEntry"]
+
+UNKNOWN_KIND = "unknown"
+"""Of targets whose rejection does not name it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,10 +34,15 @@ class ImageEntry:
     acquired : datetime, optional
         When. Without a time zone it is UTC.
     gsd_m : (float, float), optional
-        GSD from row to row and from column to column.
+        GSD from row to row and from column to column; one number is both.
     view_zenith_deg, view_azimuth_deg, sun_elevation_deg, sun_azimuth_deg : float, optional
     sources : mapping, optional
         Which file each value is from.
+
+    Raises
+    ------
+    OptionError
+        If a name is no text, or the GSD neither one number nor two.
     """
 
     path: str | None = None
@@ -50,6 +59,9 @@ class ImageEntry:
 
     def __post_init__(self) -> None:
         _require_texts(self, "path", "content", "sensor", "level")
+        _take_empty_for_none(self, "sensor", "level")
+        if self.gsd_m is not None:
+            object.__setattr__(self, "gsd_m", _two_sides(self.gsd_m))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,7 +72,7 @@ class TargetEntry:
     ----------
     name : str
     kind : str
-        "edge", "pulse", "points", "biresolution", "bars", "star", "scene", "combined".
+        "edge", "pulse", "points", "biresolution", "bars", "star", "scene", "combined"; "unknown".
     definition : mapping, optional
         The GeoJSON feature as it was given.
     site : str, optional
@@ -82,6 +94,7 @@ class TargetEntry:
 
     def __post_init__(self) -> None:
         _require_texts(self, "name", "kind", "site")
+        _take_empty_for_none(self, "site")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -168,6 +181,7 @@ class Entry:
                 f"an entry has either a record or a rejection, this one has {found}: give one"
             )
         _require_texts(self, "band", "key")
+        _take_empty_for_none(self, "band")
         if self.key == "":
             raise OptionError("the key of an entry is empty: give one, or none to have it derived")
 
@@ -203,3 +217,20 @@ def _require(entry: object, kind: Any, needed: str, *names: str) -> None:
                 f"{type(entry).__name__}: {name} is {value!r:.60}, a {type(value).__name__}: give "
                 f"{needed}"
             )
+
+
+def _take_empty_for_none(entry: ImageEntry | TargetEntry | Entry, *names: str) -> None:
+    """Names without a letter are none: filters take '' for what has no name."""
+    for name in names:
+        if getattr(entry, name) == "":
+            object.__setattr__(entry, name, None)
+
+
+def _two_sides(gsd_m: Any) -> tuple[Any, Any]:
+    sides = (gsd_m, gsd_m) if isinstance(gsd_m, Real) else gsd_m
+    if not isinstance(sides, tuple | list) or len(sides) != 2:
+        raise OptionError(
+            f"ImageEntry: gsd_m is {gsd_m!r:.60}: give metres, .7, or (ROW, COLUMN) where they "
+            "differ"
+        )
+    return sides[0], sides[1]

@@ -8,7 +8,6 @@ Measurements stay as they are.
 
 from __future__ import annotations
 
-import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
@@ -26,9 +25,9 @@ from acutance.archive.counted import counted
 from acutance.archive.dates import When, as_utc
 from acutance.archive.named_images import ImageKey, named_images
 from acutance.archive.packing import plain_json
+from acutance.archive.possible_values import image_faults, sides_of
 from acutance.archive.tables import directions, images, measurements
 from acutance.errors import OptionError
-from acutance.raster.gsd import Gsd
 from acutance.raster.metadata.findings import ANGLES
 
 __all__ = [
@@ -40,6 +39,7 @@ __all__ = [
 
 CORRECTED: Final = ("sensor", "level", BAND, "acquired", "gsd_m", *ANGLES)
 """What of an image can be corrected."""
+_MEASURES: Final = ("acquired", "gsd_m")
 _SAME_GSD: Final = 1e-6
 """Images of one question to the database."""
 
@@ -99,30 +99,9 @@ class ImageCorrection:
             value = getattr(self, name)
             if value is not None and not (isinstance(value, str) and value):
                 yield f"{name} is {value!r}: write a text"
-        if self.acquired is not None:
-            try:
-                as_utc(self.acquired, "acquired")
-            except OptionError as error:
-                yield str(error)
-        if self.gsd_m is not None and not all(_is_number(one) and one > 0 for one in self._sides()):
-            yield f"gsd_m is {self.gsd_m!r}: write metres, .7, or two where they differ"
-        elif self.gsd_m is not None:
-            try:
-                Gsd.given(Gsd(*self._sides()))
-            except OptionError as error:
-                yield str(error)
-        for name, (low, high) in ANGLES.items():
-            value = getattr(self, name)
-            if value is not None and not (_is_number(value) and low <= value <= high):
-                yield f"{name} is {value!r}: write degrees from {low:g} to {high:g}"
+        yield from image_faults({name: getattr(self, name) for name in (*_MEASURES, *ANGLES)})
         if all(getattr(self, name) is None for name in CORRECTED):
             yield f"nothing is corrected: give one of {', '.join(CORRECTED)}"
-
-    def _sides(self) -> Sequence[Any]:
-        sides = self.gsd_m
-        if not isinstance(sides, tuple | list):
-            return (sides, sides)
-        return sides if len(sides) == 2 else (None, None)
 
     @property
     def columns(self) -> dict[str, Any]:
@@ -131,13 +110,8 @@ class ImageCorrection:
         if self.acquired is not None:
             found["acquired"] = as_utc(self.acquired, "acquired")
         if self.gsd_m is not None:
-            found["gsd_row_m"], found["gsd_col_m"] = (float(one) for one in self._sides())
+            found["gsd_row_m"], found["gsd_col_m"] = (float(one) for one in sides_of(self.gsd_m))
         return {name: value for name, value in found.items() if value is not None}
-
-
-def _is_number(value: Any) -> bool:
-    is_number = isinstance(value, int | float) and not isinstance(value, bool)
-    return is_number and math.isfinite(value)
 
 
 @dataclass(frozen=True)

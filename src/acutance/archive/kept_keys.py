@@ -44,12 +44,12 @@ def kept_keys(connection: Connection, entries: Sequence[EntryRows]) -> dict[str,
 def _stated_by_key(connection: Connection, keys: Iterable[str]) -> dict[str, Stated]:
     """What was stated of measurements that are kept."""
     asked = (
-        select(measurements.c.key, documents.c.document)
+        select(measurements.c.key, documents)
         .join(documents, documents.c.measurement_id == measurements.c.id)
         .where(measurements.c.key.in_(list(keys)))
     )
     rows = connection.execute(asked).all()
-    return {row.key: stated_of(Record(unpacked(row.document))) for row in rows}
+    return {row.key: stated_of(Record(unpacked(row.document, row.measurement_id))) for row in rows}
 
 
 def _agree(kept: Stated, stated: Stated) -> bool:

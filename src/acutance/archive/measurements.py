@@ -198,6 +198,8 @@ def read_records(database: Database, ids: Sequence[int]) -> list[Record]:
     ------
     OptionError
         If there is no measurement of a number.
+    ArchiveError
+        If the document of one is damaged.
     """
     stored: dict[int, bytes] = {}
     for some in in_chunks(ids, _MANY):
@@ -206,7 +208,7 @@ def read_records(database: Database, ids: Sequence[int]) -> list[Record]:
     missing = [number for number in ids if number not in stored]
     if missing:
         raise OptionError(f"there is no measurement {missing[0]} in the archive")
-    return [Record(unpacked(stored[number])) for number in ids]
+    return [Record(unpacked(stored[number], number)) for number in ids]
 
 
 def _by_number(connection: Connection, asked: Select[Any]) -> dict[int, bytes]:

@@ -7,6 +7,7 @@ transaction: an archive is of one version or of another, whenever a process ends
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from datetime import UTC, datetime
 from typing import Any
 
@@ -42,7 +43,9 @@ def _add_systematic_stds(connection: Connection) -> None:
     for first in range(0, len(ids), _SOME):
         some = documents.c.measurement_id.in_(ids[first : first + _SOME])
         for number, stored in connection.execute(select(documents).where(some)).all():
-            _fill_systematic_stds(connection, number, unpacked(stored))
+            # Of a damaged document nothing is known: the others are brought forward.
+            with suppress(ArchiveError):
+                _fill_systematic_stds(connection, number, unpacked(stored, number))
 
 
 def _fill_systematic_stds(connection: Connection, number: int, document: Mapping[str, Any]) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 import orjson
 from isal import isal_zlib
 
-from acutance.errors import OptionError
+from acutance.errors import ArchiveError, OptionError
 
 __all__ = ["json_bytes", "packed", "plain_json", "unpacked"]
 
@@ -64,7 +64,27 @@ def packed(document: Mapping[str, Any]) -> bytes:
     return stored
 
 
-def unpacked(stored: bytes) -> dict[str, Any]:
-    """The document that was stored."""
-    document: dict[str, Any] = orjson.loads(zlib.decompress(stored))
+def unpacked(stored: bytes, number: int) -> dict[str, Any]:
+    """The document that was stored.
+
+    Parameters
+    ----------
+    stored : bytes
+    number : int
+        Of the measurement, for the message.
+
+    Raises
+    ------
+    ArchiveError
+        If it is damaged.
+    """
+    try:
+        document = orjson.loads(zlib.decompress(stored))
+        if not isinstance(document, dict):
+            raise ValueError(f"it is a {type(document).__name__}")
+    except (zlib.error, TypeError, ValueError) as error:
+        raise ArchiveError(
+            f"the document of measurement {number} is damaged ({error}): take the archive from a "
+            "copy, or remove the image of the measurement and measure it again"
+        ) from error
     return document

@@ -176,7 +176,7 @@ def read_specification(path: str | os.PathLike[str]) -> Specification:
         If there is no path, the file cannot be read, is no TOML, or says what cannot be.
     """
     try:
-        text = Path(path).read_bytes().decode()
+        text = Path(path).read_bytes().decode("utf-8-sig")
         document = tomllib.loads(text)
     except TypeError:
         raise OptionError(

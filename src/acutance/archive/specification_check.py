@@ -38,6 +38,8 @@ __all__ = ["check_requirement", "check_specification"]
 _YEAR_DAYS: Final = 365.25
 _MOST: Final = 10_000
 """More images than this are no answer."""
+_STEP_THAT_COUNTS: Final = 0.05
+"""Less of the probability does not skew a density."""
 
 
 Select = Callable[[dict[str, Any]], Columns]
@@ -200,7 +202,7 @@ def _by_trend(requirement: Requirement, trend: Trend) -> Answer:
         requirement, trend.name, met, mean, date_of(year), trend.images.images, square * lost,
         trend.images.systematic_std,
         " ".join(filter(None, (
-            season_words(trend), *_skewed(requirement, mean, below), *trend.notes
+            season_words(trend), *_skewed(requirement, mean, below, trend), *trend.notes
         ))),
     )  # fmt: skip
     nearest = date_of(min(max(year, first), last))
@@ -210,15 +212,23 @@ def _by_trend(requirement: Requirement, trend: Trend) -> Answer:
     return replace(found, more_images=None, nearest=nearest)
 
 
-def _skewed(requirement: Requirement, mean: Estimate, below: float) -> tuple[str, ...]:
+def _skewed(
+    requirement: Requirement, mean: Estimate, below: float, trend: Trend
+) -> tuple[str, ...]:
     """What to know where the middle of the interval and the probability point to two sides."""
     limit = requirement.limit
     if (mean.value < limit) == (below > 0.5):
         return ()
     middle, most = ("below", "above") if mean.value < limit else ("above", "below")
+    # Among few images no step is sought: there it is the scatter that is open.
+    has_steps = 1 - trend.posterior.step_probability[0] >= _STEP_THAT_COUNTS
+    why = (
+        "where a step is probable and not certain" if has_steps else
+        "where the images leave open how much they scatter, and which of them lie far off"
+    )  # fmt: skip
     return (
         f"The middle of the interval lies {middle} {limit:g}, and yet most of the probability "
-        f"{most} it: the density is skewed, as where a step is probable and not certain.",
+        f"{most} it: the density is skewed, as {why}.",
     )
 
 

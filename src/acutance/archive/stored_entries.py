@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import warnings
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
 from sqlalchemy import Connection, RowMapping, exists, select
@@ -13,10 +14,11 @@ from acutance.archive.packing import unpacked
 from acutance.archive.runs import runs_by_id
 from acutance.archive.selection import Selection
 from acutance.archive.tables import directions, documents, images, measurements, targets
+from acutance.errors import ArchiveError
 from acutance.targets.record import Record
 from acutance.targets.target_result import Rejected
 
-__all__ = ["select_ids", "stored_entries"]
+__all__ = ["select_ids", "stored_entries", "undamaged_entries"]
 
 _SOME = 500
 
@@ -27,10 +29,42 @@ _OF_IMAGE = (
 )  # fmt: skip
 
 
-def stored_entries(database: Database, ids: Sequence[int]) -> Iterator[Entry]:
-    """Entries by their numbers, read some hundred at a time."""
+def stored_entries(
+    database: Database, ids: Sequence[int], damaged: Callable[[ArchiveError], None] | None = None
+) -> Iterator[Entry]:
+    """Entries by their numbers, read some hundred at a time.
+
+    Parameters
+    ----------
+    database : Database
+    ids : sequence of int
+    damaged : callable, optional
+        Called with the error of each damaged document, which is passed over then.
+
+    Raises
+    ------
+    ArchiveError
+        If a document is damaged and nothing was given to be called.
+    """
     for first in range(0, len(ids), _SOME):
-        yield from database.read(partial(_read, ids=ids[first : first + _SOME]))
+        for row, run in database.read(partial(_read, ids=ids[first : first + _SOME])):
+            try:
+                entry = _entry(row, run)
+            except ArchiveError as error:
+                if damaged is None:
+                    raise
+                damaged(error)
+            else:
+                yield entry
+
+
+def undamaged_entries(database: Database, ids: Sequence[int]) -> Iterator[Entry]:
+    """Entries by their numbers; at the end a warning names damaged ones, which are left out."""
+    damaged: list[ArchiveError] = []
+    yield from stored_entries(database, ids, damaged.append)
+    if damaged:
+        more = f" (and {len(damaged) - 1} more)" if len(damaged) > 1 else ""
+        warnings.warn(f"left out: {damaged[0]}{more}", stacklevel=2)
 
 
 def select_ids(database: Database, selection: Selection) -> list[int]:
@@ -49,7 +83,8 @@ def select_ids(database: Database, selection: Selection) -> list[int]:
     return database.read(lambda connection: list(connection.execute(asked).scalars()))
 
 
-def _read(connection: Connection, ids: Sequence[int]) -> list[Entry]:
+def _read(connection: Connection, ids: Sequence[int]) -> list[tuple[RowMapping, RunEntry | None]]:
+    """Rows of entries, and the runs that wrote them."""
     joined = (
         measurements.join(images)
         .outerjoin(targets, measurements.c.target_id == targets.c.id)
@@ -57,6 +92,7 @@ def _read(connection: Connection, ids: Sequence[int]) -> list[Entry]:
     )
     asked = select(
         *(measurements.c[name] for name in ("key", "band", "stage", "reason", "rejected_values")),
+        measurements.c.id,
         measurements.c.run_id,
         documents.c.document,
         images.c.gsd_row_m,
@@ -67,7 +103,7 @@ def _read(connection: Connection, ids: Sequence[int]) -> list[Entry]:
     asked = asked.select_from(joined).where(measurements.c.id.in_(ids)).order_by(measurements.c.id)
     rows = connection.execute(asked).mappings().all()
     runs = runs_by_id(connection, (row["run_id"] for row in rows))
-    return [_entry(row, runs.get(row["run_id"])) for row in rows]
+    return [(row, runs.get(row["run_id"])) for row in rows]
 
 
 def _entry(row: RowMapping, run: RunEntry | None) -> Entry:
@@ -78,7 +114,7 @@ def _entry(row: RowMapping, run: RunEntry | None) -> Entry:
         target = TargetEntry(**{name: row[f"target_{name}"] for name in _OF_TARGET})
     record, rejected = None, None
     if row["document"] is not None:
-        record = Record(unpacked(row["document"]))
+        record = Record(unpacked(row["document"], row["id"]))
     else:
         rejected = Rejected(row["stage"], row["reason"], row["rejected_values"])
     return Entry(

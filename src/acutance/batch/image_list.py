@@ -58,7 +58,7 @@ def list_images(patterns: Iterable[str]) -> list[ImageFile]:
                 plans.append(path)
             elif is_path and os.path.isdir(path):
                 folders.append(path)
-            elif is_path or os.path.isfile(path):
+            elif is_path or os.path.isfile(path) or _leads_nowhere(path):
                 found.setdefault(os.path.realpath(path), _image_file(path))
     faults = [
         *_fault("no file matches", empty, "correct the names of the images"),
@@ -70,6 +70,11 @@ def list_images(patterns: Iterable[str]) -> list[ImageFile]:
     if not found:
         raise OptionError("there are no images: name files, or a pattern such as images/*.tif")
     return list(found.values())
+
+
+def _leads_nowhere(path: str) -> bool:
+    """Whether a path is a link to what is not there: an image that is missing, and no folder."""
+    return os.path.islink(path) and not os.path.exists(path)
 
 
 def _fault(what: str, paths: Sequence[str], advice: str) -> list[str]:

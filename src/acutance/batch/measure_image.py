@@ -12,6 +12,7 @@ from typing import Any
 
 from acutance.archive.entry import Entry, ImageEntry
 from acutance.batch.entries import image_entry, image_facts, target_entry
+from acutance.batch.path_text import path_as_text
 from acutance.batch.place_target import NotHereError, PlacedTarget, place_target
 from acutance.batch.plan import StatedOfImages
 from acutance.batch.plan_options import ChosenOptions
@@ -63,6 +64,8 @@ class BatchTask:
     Parameters
     ----------
     path : str
+    place : str
+        The same from the root: processes may stand in other folders.
     content : str or None
         SHA-256; None if it cannot be read.
     stated : StatedOfImages
@@ -77,6 +80,7 @@ class BatchTask:
     """
 
     path: str
+    place: str
     content: str | None
     stated: StatedOfImages
     reading: Reading
@@ -190,11 +194,14 @@ def _has_gsd(image: Image) -> bool:
 
 
 def _unreadable(task: BatchTask, error: AcutanceError) -> Entry:
-    is_missing = task.content is None and not os.path.lexists(task.path)
+    # A link that leads nowhere is no file either.
+    is_missing = task.content is None and not os.path.exists(task.path)
     why = NO_FILE if is_missing else UNREADABLE
-    rejected = Rejected("image", str(error), {"why": why, "path": task.path})
-    image = ImageEntry(path=task.path, content=task.content, sensor=task.stated.sensor)
-    return Entry(rejected=rejected, image=image, key=unreadable_key(task.content, task.path))
+    # Many folders have files of one name: where no content tells them apart, the folder does.
+    path = path_as_text(task.place if task.content is None else task.path)
+    rejected = Rejected("image", path_as_text(str(error)), {"why": why, "path": path})
+    image = ImageEntry(path=path, content=task.content, sensor=task.stated.sensor)
+    return Entry(rejected=rejected, image=image, key=unreadable_key(task.content, task.place))
 
 
 def _rows(work: BatchWork, task: BatchTask, opened: _Opened) -> Iterator[tuple[Entry, float]]:

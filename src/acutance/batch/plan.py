@@ -12,12 +12,13 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
+from acutance.batch.path_text import path_as_text
 from acutance.batch.plan_options import faults_of_plan
 from acutance.errors import OptionError
 from acutance.raster.document_faults import document_faults
 from acutance.raster.gsd import Gsd
 from acutance.raster.metadata.findings import ANGLES
-from acutance.raster.metadata.times import time_or_day
+from acutance.raster.metadata.times import is_possible, possible_days, time_or_day
 from acutance.raster.nearest_name import nearest_name
 
 __all__ = ["BatchPlan", "StatedOfImages", "is_plan_file", "plan_of", "read_plan"]
@@ -57,11 +58,11 @@ class _Stated(_Model):
     @classmethod
     def _a_time(cls, value: Any) -> Any:
         # A number would be taken for seconds since 1970.
-        if value is None or isinstance(value, date):
-            return value
-        found = time_or_day(value)
-        if found is None:
+        found = value if value is None or isinstance(value, date) else time_or_day(value)
+        if found is None and value is not None:
             raise ValueError("write a time, 2026-01-05T10:00:00Z, or a day, 2026-01-05")
+        if found is not None and not is_possible(found):
+            raise ValueError("{} to {} are the days of images".format(*possible_days()))
         return found
 
     @field_validator("gsd_m")
@@ -181,7 +182,7 @@ class BatchPlan:
         """All of it, for JSON."""
         return {
             **{one.name: getattr(self, one.name) for one in fields(self)},
-            "images": list(self.images),
+            "images": [path_as_text(one) for one in self.images],
             "stated": [_set_values(one) for one in self.stated],
             "options": {kind: dict(one) for kind, one in self.options.items()},
         }

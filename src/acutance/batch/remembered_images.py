@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from acutance.batch.image_list import ImageFile
+from acutance.batch.path_text import path_as_text
 
 __all__ = ["KnownImage", "RememberedImages"]
 
@@ -80,7 +81,7 @@ class RememberedImages:
             return {}
         found = {}
         for file in files:
-            stamp, text = rows.get(os.path.realpath(file.path), ("", ""))
+            stamp, text = rows.get(_name(file), ("", ""))
             if file.stamp and stamp == file.stamp:
                 known = _known_image(text)
                 if known is not None:
@@ -90,7 +91,7 @@ class RememberedImages:
     def remember(self, images: Mapping[ImageFile, KnownImage]) -> None:
         """Write down what was found out."""
         rows = [
-            (os.path.realpath(file.path), file.stamp, json.dumps(asdict(known)))
+            (_name(file), file.stamp, json.dumps(asdict(known)))
             for file, known in images.items()
             if file.stamp
         ]
@@ -107,6 +108,10 @@ class RememberedImages:
         database.execute("PRAGMA synchronous = OFF")
         database.execute(_TABLE)
         return database
+
+
+def _name(file: ImageFile) -> str:
+    return path_as_text(os.path.realpath(file.path))
 
 
 def _cache_folder() -> Path:

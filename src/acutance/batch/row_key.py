@@ -92,8 +92,19 @@ def day_of(target: SurveyedTarget, day: str | None) -> str | None:
 
 
 def unreadable_key(content: str | None, path: str) -> str:
-    """The key of the one row of an image that cannot be read."""
-    return hashlib.sha256(f"unreadable/{content or path}".encode()).hexdigest()
+    """The key of the one row of an image that cannot be read.
+
+    Parameters
+    ----------
+    content : str or None
+        SHA-256 of the image.
+    path : str
+        Where its content is not known: the absolute path, since many folders have images of one
+        name. Version 0.1 took the path as it was typed.
+    """
+    # Names of files may be no UTF-8.
+    text = f"unreadable/{content or path}".encode("utf-8", "backslashreplace")
+    return hashlib.sha256(text).hexdigest()
 
 
 def _digest(document: Any) -> str:

@@ -22,6 +22,7 @@ from acutance.batch.image_list import (
     stated_of,
 )
 from acutance.batch.measure_image import BatchTask, BatchWork, MeasuredImage
+from acutance.batch.path_text import path_as_text
 from acutance.batch.plan import BatchPlan, StatedOfImages, read_plan
 from acutance.batch.plan_options import choose_options, require_options
 from acutance.batch.remembered_images import KnownImage, RememberedImages
@@ -127,10 +128,17 @@ def run_batch(
         run = _run(todo, wanted, work, place, there, tally, progress, kept) if todo else None
         place.remove_rejections(tally.outlived)
         otherwise = place.kept_otherwise(tally.stated, tally.said)
-        earlier = place.earlier_contents({path: one.content for path, one in known.items()})
+        earlier = _earlier_contents(place, known)
     bands = [one for some in (work.bands, *(t.bands for t in work.targets)) for one in some or ()]
     elapsed_s = time.monotonic() - begin
     return tally.summary(wanted.archive, len(files), elapsed_s, run, bands, otherwise, earlier)
+
+
+def _earlier_contents(archive: Archive, known: Mapping[str, KnownImage]) -> dict[str, list[str]]:
+    """Contents that files had before and of which there still are rows, by path."""
+    by_text = {path_as_text(path): path for path in known}
+    now = {text: known[path].content for text, path in by_text.items()}
+    return {by_text[text]: one for text, one in archive.earlier_contents(now).items()}
 
 
 def _wanted(
@@ -230,10 +238,10 @@ def _tasks(
         stated, image = stated_of(file.path, plan.stated), known.get(file.path)
         if image is not None:
             image = image.under(_statement(stated))
+        place = os.path.abspath(file.path)
         reading = reading_of({name: getattr(stated, name) for name in _READING})
         content = None if image is None else image.content
-        if content is not None:
-            tally.outlived.add(unreadable_key(None, file.path))
+        tally.outlived |= _outlived_by_path(file.path, place, is_there=content is not None)
         if content is not None and (content, reading) in seen:
             tally.copies[file.path] = seen[content, reading]
             continue
@@ -242,8 +250,8 @@ def _tasks(
             tally.bands.update(Band(*one) for one in image.bands or ())
         done = by_content.get(content or "", set())
         wanted = None if image is None else _wanted_keys(image, reading, work)
-        if unreadable_key(content, file.path) in done:
-            tally.add_earlier(file.path, [there[unreadable_key(content, file.path)]])
+        if unreadable_key(content, place) in done:
+            tally.add_earlier(file.path, [there[unreadable_key(content, place)]])
             continue
         without_gsd = frozenset(key for key in done if _lacked_gsd(there[key]))
         again = without_gsd if image is not None and "gsd_m" in image.facts else frozenset()
@@ -253,9 +261,19 @@ def _tasks(
             tally.add_said(wanted, entry_of_facts(image.facts))
             tally.outlived |= _outlived_keys(image, reading, work)
             continue
-        task = BatchTask(file.path, content, stated, reading, frozenset(done), without_gsd)
+        task = BatchTask(file.path, place, content, stated, reading, frozenset(done), without_gsd)
         found.append((file, task))
     return found
+
+
+def _outlived_by_path(typed: str, place: str, is_there: bool) -> set[str]:
+    """Keys of rows of a file that could not be read and can be, and those of version 0.1.
+
+    Those had the path as it was typed, the same in every folder: what is still missing has a row
+    of its own folder instead.
+    """
+    own, older = unreadable_key(None, place), unreadable_key(None, typed)
+    return {own, older} if is_there else {older} - {own}
 
 
 def _lacked_gsd(row: Outcome) -> bool:

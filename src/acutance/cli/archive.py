@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
+from warnings import catch_warnings
 
 import typer
 
@@ -28,7 +29,7 @@ from acutance.cli.option_groups import with_groups
 from acutance.cli.options import JsonOption
 from acutance.cli.output import check_output
 from acutance.cli.progress import progress_bar
-from acutance.cli.terminal import BAD_USAGE, NOTHING_MEASURED, fail, say
+from acutance.cli.terminal import BAD_USAGE, NOTHING_MEASURED, fail, say, warnings_said
 from acutance.errors import OptionError
 
 if TYPE_CHECKING:
@@ -245,7 +246,7 @@ def export(
         check_output("OUT", out, _ENDINGS[to], keep=[place])
     from acutance.archive import Archive
 
-    with Archive(place, read_only=True) as archive:
+    with Archive(place, read_only=True) as archive, warnings_said():
         if not any(True for _ in archive.entries(**selected.words)):
             archive.require_known_names(selected.words)
             fail(f"archive {place} holds nothing that is selected", NOTHING_MEASURED)
@@ -253,7 +254,9 @@ def export(
             count = archive.export(
                 out, to="csv-documents" if documents else to, progress=progress, **selected.words
             )
-        left = _undated(archive.entries(**selected.words)) if to == "stac" else ""
+        with catch_warnings(action="ignore"):
+            # What is damaged was said by the export.
+            left = _undated(archive.entries(**selected.words)) if to == "stac" else ""
     say(f"wrote {out}, {count} {'entry' if count == 1 else 'entries'}{left}")
 
 

@@ -132,7 +132,7 @@ def parse_reference(text: str | None) -> ReferenceLike:
         from acutance.targets.pair import measured_reference
 
         try:
-            document = json.loads(Path(text).read_text(encoding="utf-8"))
+            document = json.loads(Path(text).read_text(encoding="utf-8-sig"))
         except (OSError, ValueError) as error:
             raise OptionError(f"--reference {text} cannot be read ({error})") from error
         return measured_reference(document, f"--reference {text}")

@@ -20,7 +20,7 @@ def read_json(name: str) -> Any:
         If it cannot be read, or is no JSON.
     """
     try:
-        return json.loads(Path(name).read_text(encoding="utf-8"))
+        return json.loads(Path(name).read_text(encoding="utf-8-sig"))
     except OSError as error:
         reason = error.strerror or str(error)
         raise OptionError(

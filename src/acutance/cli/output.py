@@ -62,12 +62,11 @@ class OutputFile:
             If the file system refuses.
         """
         data = content.encode() if isinstance(content, str) else content
-        part = _part_path(self.path)
         try:
-            part.write_bytes(data)
-            os.replace(part, self.place)
+            with _part_path(self.place) as part:
+                part.write_bytes(data)
+                os.replace(part, self.place)
         except OSError as error:
-            part.unlink(missing_ok=True)
             raise OptionError(_refusal(self.option, self.path, error)) from error
 
     def deliver(self, content: str | bytes) -> None:
@@ -115,10 +114,9 @@ def check_output(
             "it first, or remove the link"
         )
     require_own_file(option, name, keep=keep)
-    part = _part_path(path)
     try:
-        part.write_bytes(b"")
-        part.unlink()
+        with _part_path(place) as part:
+            part.write_bytes(b"")
     except OSError as error:
         raise OptionError(_refusal(option, path, error)) from error
     return OutputFile(option, path)
@@ -216,10 +214,14 @@ def _place(path: Path) -> Path:
     return Path(os.path.realpath(path))
 
 
-def _part_path(path: Path) -> Path:
-    """A name in the folder where the content goes, so that a rename puts it in place."""
-    place = _place(path)
-    return place.with_name(f".{place.name}.{os.getpid()}.part")
+@contextmanager
+def _part_path(place: Path) -> Iterator[Path]:
+    """A name on the file system where the content goes, so that a rename puts it in place."""
+    # Help, which writes nothing, does without numpy.
+    from acutance.raster.partial_folder import partial_folder
+
+    with partial_folder(place) as folder:
+        yield Path(folder, place.name)
 
 
 def _refusal(option: str, path: Path, error: OSError) -> str:

@@ -95,7 +95,7 @@ def read_sensor(path: str | os.PathLike[str], gsd_m: float | None = None) -> Sen
         file, the block and the key.
     """
     try:
-        text = Path(path).read_text(encoding="utf-8")
+        text = Path(path).read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise ModelError(

@@ -226,6 +226,10 @@ def _require_file(name: str) -> None:
         raise ImageError(f"{name} cannot be reached ({error.strerror}): check the path") from error
     if is_empty:
         raise ImageError(f"{name} is empty (0 bytes): write or copy it again")
+    if not is_file and not is_folder and path.is_symlink():
+        raise ImageError(
+            f"{name} does not exist (it is a link to {os.readlink(path)}): correct the link"
+        )
     if not is_file and not is_folder and not _GDAL_NAME.match(name):
         found = "its folder exists" if path.parent.is_dir() else "nor does its folder"
         near = nearest_name(path)

@@ -7,7 +7,6 @@ import math
 import os
 import warnings
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from numbers import Real
 from pathlib import Path
@@ -19,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ImageError, NoDataError, OptionError
 from acutance.raster import Box, Image, SwathFill, find_swath_fill, open_image
+from acutance.raster.partial_folder import partial_folder
 from acutance.raster.pixels import (
     equals_nodata,
     largest_count,
@@ -292,17 +292,16 @@ def _restore_npy(
     source: Any = image.source
     pixels, counts = restore_array(source.map(), filter, nodata=nodata, saturation=saturation)
     _require_data({1: counts}, image)
-    part = Path(f"{os.path.realpath(out)}.{os.getpid()}.part")
+    place = Path(os.path.realpath(out))
     try:
-        with part.open("wb") as file:
-            np.save(file, pixels)
-        os.replace(part, os.path.realpath(out))
+        # Also where the run is interrupted no part of an image stays: it is of no use.
+        with partial_folder(place) as folder:
+            part = Path(folder, place.name)
+            with part.open("wb") as file:
+                np.save(file, pixels)
+            os.replace(part, place)
     except OSError as error:
         raise ImageError(f"{out} cannot be written ({error.strerror or error})") from error
-    finally:
-        # Also where the run is interrupted: a part of an image is of no use.
-        with suppress(OSError):
-            part.unlink()
     return RestoredImage(out, {1: counts}, match_notes(image, filter, [1]))
 
 

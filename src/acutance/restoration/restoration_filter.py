@@ -112,7 +112,7 @@ class RestorationFilter(ShortRepr):
             If there is no such file, or it holds no filter.
         """
         try:
-            document = json.loads(Path(path).read_text(encoding="utf-8"))
+            document = json.loads(Path(path).read_text(encoding="utf-8-sig"))
         except OSError as error:
             raise OptionError(
                 f"{path} cannot be read ({error.strerror or error}): give a file that 'acutance "

@@ -406,6 +406,13 @@ def test_tags(product):
     assert "is when the file was written: not taken" in found.notes[0]
 
 
+@pytest.mark.parametrize("text", ["2150-01-05T12:00:00Z", "2150-01-05", "1900-01-01", "9999-12-31"])
+def test_a_time_of_no_image_is_not_taken(product, text):
+    found = product("scene.tif", {}, tags={"ACQUISITION_DATETIME": text})
+    assert found.acquired is None
+    assert any(note.endswith("not taken") and text[:10] in note for note in found.notes)
+
+
 def test_a_time_without_a_zone_is_named(product):
     found = product("scene.tif", {}, tags={"ACQUISITION_DATETIME": "2026-01-05 12:00:00"})
     assert found.acquired.value == datetime(2026, 1, 5, 12, tzinfo=UTC)

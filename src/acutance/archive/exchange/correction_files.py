@@ -33,7 +33,8 @@ def read_correction_file(place: str | os.PathLike[str]) -> list[ImageCorrection]
     Raises
     ------
     OptionError
-        If it cannot be read, or holds what is not known: all faults are named at once.
+        If it cannot be read, holds what is not known, or two values of one image under one name:
+        all faults are named at once.
     """
     path = Path(place)
     try:
@@ -41,17 +42,31 @@ def read_correction_file(place: str | os.PathLike[str]) -> list[ImageCorrection]
         rows = list(_json_rows(text) if path.suffix.lower() == ".json" else _csv_rows(text))
     except (OSError, ValueError, csv.Error) as error:
         raise OptionError(f"the corrections {path} cannot be read: {error}") from error
-    found, faults = [], []
+    found, faults = {}, []
     for place_of, row in rows:
         try:
-            found.append(_correction(row))
+            found[place_of] = _correction(row)
         except OptionError as error:
             faults.append(f"  - {place_of}: {error}")
+    faults += _contradictions(found)
     if faults:
         raise OptionError("\n".join((f"the corrections {path} cannot be used:", *faults)))
     if not found:
         raise OptionError(f"the corrections {path} are empty: write a row an image")
-    return found
+    return list(found.values())
+
+
+def _contradictions(found: Mapping[str, ImageCorrection]) -> Iterator[str]:
+    """Rows that give one image two values: which of them is meant, no order of rows says."""
+    stated: dict[tuple[str, str], tuple[str, Any]] = {}
+    for place, one in found.items():
+        for name, value in one.columns.items():
+            before, other = stated.setdefault((one.image, name), (place, value))
+            if other != value:
+                yield (
+                    f"  - {before} and {place}: {name} of {one.image} is {other} and {value}: "
+                    "leave one of them"
+                )
 
 
 def _json_rows(text: str) -> Iterator[tuple[str, dict[str, Any]]]:

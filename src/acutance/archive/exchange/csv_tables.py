@@ -49,7 +49,7 @@ def read_csv(place: Path) -> Iterator[tuple[str, str]]:
         If it has no column of documents.
     """
     csv.field_size_limit(min(sys.maxsize, 2**31 - 1))
-    with place.open(encoding="utf-8", newline="") as file:
+    with place.open(encoding="utf-8-sig", newline="") as file:
         rows = csv.DictReader(file)
         if "document" not in (rows.fieldnames or ()):
             raise OptionError(

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Any
 
-from acutance.archive.entry import Entry, ImageEntry, TargetEntry
+from acutance.archive.entry import UNKNOWN_KIND, Entry, ImageEntry, TargetEntry
 from acutance.archive.exchange import entry_document
 from acutance.archive.restored_images import restored_sources
 from acutance.errors import OptionError
@@ -122,7 +122,7 @@ def _rejected(document: Mapping[str, Any], stated: Stated, marks: Mapping[str, A
     )
     target = stated.target if stated.target is not None else region
     if isinstance(target, str):
-        target = TargetEntry(name=target, kind="unknown")
+        target = TargetEntry(name=target, kind=UNKNOWN_KIND)
     names = (stated.band, rejected.values.get("band_name"), rejected.values.get("band"))
     band = next((one for one in names if one is not None), None)
     return Entry(rejected=rejected, image=image, target=target, band=band)

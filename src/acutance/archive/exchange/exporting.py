@@ -10,18 +10,21 @@ from pathlib import Path
 from acutance.archive.connection import Database
 from acutance.archive.entry import Entry
 from acutance.archive.exchange.csv_tables import write_csv
+from acutance.archive.exchange.files import refusals_in_words
 from acutance.archive.exchange.jsonl import write_jsonl
 from acutance.archive.exchange.parquet import write_parquet
 from acutance.archive.exchange.stac import write_stac
 from acutance.archive.runs import named_once
 from acutance.archive.selection import Selection
-from acutance.archive.stored_entries import select_ids, stored_entries
+from acutance.archive.stored_entries import select_ids, undamaged_entries
 from acutance.errors import OptionError
 
 __all__ = ["FORMATS", "export_entries"]
 
 Progress = Callable[[int, int], None]
 _REPORT_EVERY = 500
+_SQLITE = b"SQLite format 3\0"
+_BESIDE = ("-wal", "-shm", "-journal")
 
 FORMATS: Mapping[str, Callable[[Iterable[Entry], Path], int]] = {
     "jsonl": write_jsonl,
@@ -40,7 +43,7 @@ def export_entries(
     to: str,
     progress: Progress | None = None,
 ) -> int:
-    """Write what a selection means, and count it.
+    """Write what a selection means, and count it; a warning names damaged rows, left out.
 
     Parameters
     ----------
@@ -56,16 +59,39 @@ def export_entries(
     Raises
     ------
     OptionError
-        If there is no such format, its library is missing, or the place cannot be written.
+        If there is no such format, its library is missing, the place cannot be written, or is
+        that of an archive.
     """
     if to not in FORMATS:
         raise OptionError(f"there is no format {to!r} to export to, only {', '.join(FORMATS)}")
     path = Path(place)
     if not path.absolute().parent.is_dir():
         raise OptionError(f"{path} cannot be written, there is no folder {path.parent}")
+    _require_no_database(database, path)
     ids = select_ids(database, selection)
-    entries = _reported(named_once(stored_entries(database, ids)), len(ids), progress)
+    entries = _reported(named_once(undamaged_entries(database, ids)), len(ids), progress)
     return FORMATS[to](entries, path)
+
+
+def _require_no_database(database: Database, path: Path) -> None:
+    """Refuse to replace the archive itself, what SQLite has beside it, or another database.
+
+    Raises
+    ------
+    OptionError
+        If that is what the place is.
+    """
+    place = os.path.realpath(path)
+    own = os.path.realpath(database.place) if database.is_file else None
+    if own is not None and place in [own + ending for ending in ("", *_BESIDE)]:
+        raise OptionError(f"{path} is the archive itself, which would be lost: name another file")
+    if not os.path.isfile(place):
+        return
+    with refusals_in_words(path), open(place, "rb") as file:
+        if file.read(len(_SQLITE)) == _SQLITE:
+            raise OptionError(
+                f"{path} is a database, which would be lost: name another file, or remove it first"
+            )
 
 
 def _reported(entries: Iterator[Entry], total: int, progress: Progress | None) -> Iterator[Entry]:

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from acutance.errors import AcutanceError, OptionError
+from acutance.raster.partial_folder import partial_folder
 
 __all__ = ["refusals_in_words", "whole_file"]
 
@@ -16,18 +17,17 @@ __all__ = ["refusals_in_words", "whole_file"]
 def whole_file(place: Path) -> Iterator[Path]:
     """A name to write under; at the end the file is renamed, or removed after an error.
 
+    The name is in a hidden folder of its own: no file of the user's is touched before the end.
+
     Raises
     ------
     OptionError
         If the file system refuses.
     """
-    part = place.with_name(f"{place.name}.part")
-    try:
-        with refusals_in_words(place):
-            yield part
-            os.replace(part, place)
-    finally:
-        part.unlink(missing_ok=True)
+    with refusals_in_words(place), partial_folder(place) as folder:
+        part = Path(folder, place.name)
+        yield part
+        os.replace(part, place)
 
 
 @contextmanager

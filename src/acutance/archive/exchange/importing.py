@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from codecs import BOM_UTF8
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +19,7 @@ from acutance.archive.exchange.documents import Stated, entries_of
 from acutance.archive.exchange.jsonl import read_jsonl
 from acutance.archive.exchange.parquet import read_parquet
 from acutance.archive.identity import keys_of
+from acutance.archive.possible_values import require_possible
 from acutance.errors import OptionError
 
 __all__ = ["Imported", "import_files", "refused_files"]
@@ -140,7 +142,10 @@ def _readable(path: Path, stated: Stated, refused: dict[str, str]) -> Iterator[t
 def _entries(place: str, text: bytes | str, stated: Stated, refused: dict[str, str]) -> list[Entry]:
     """Entries of one text of JSON: all of them, or none."""
     try:
-        return list(entries_of(orjson.loads(text), stated))
+        found = list(entries_of(orjson.loads(text), stated))
+        for one in found:
+            require_possible(one)
+        return found
     except OptionError as error:
         refused[place] = str(error)
     except ValueError as error:
@@ -166,7 +171,8 @@ def _reader(path: Path) -> Read:
 
 
 def _read_json(path: Path) -> Iterator[tuple[str, bytes]]:
-    yield str(path), path.read_bytes()
+    # Editors on Windows write a byte order mark, which JSON has not.
+    yield str(path), path.read_bytes().removeprefix(BOM_UTF8)
 
 
 _READERS: Mapping[str, Read] = {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from codecs import BOM_UTF8
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
@@ -33,5 +34,8 @@ def read_jsonl(place: Path) -> Iterator[tuple[str, bytes]]:
     """Documents of a file as JSON, each with the line it stands in."""
     with place.open("rb") as file:
         for number, line in enumerate(file, start=1):
+            if number == 1:
+                # Editors on Windows write a byte order mark, which JSON has not.
+                line = line.removeprefix(BOM_UTF8)
             if line.strip():
                 yield f"{place}, line {number}", line

@@ -7,7 +7,6 @@ entries as JSON lines, so that nothing is lost.
 from __future__ import annotations
 
 import os
-import shutil
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -31,10 +30,12 @@ from acutance.archive.exchange.stac_item import (
 from acutance.archive.packing import json_bytes
 from acutance.errors import OptionError
 from acutance.geometry.angles import wrap_direction
+from acutance.raster.partial_folder import partial_folder
 
 __all__ = ["write_stac"]
 
 _LINES = "measurements.jsonl"
+_CATALOG = "catalog.json"
 
 
 @dataclass
@@ -66,19 +67,28 @@ def write_stac(entries: Iterable[Entry], place: Path) -> int:
             "folder that is new or empty"
         )
     require_library("pystac", "stac")
+    # A folder may be called "." or "..", and has a name all the same.
+    place = Path(os.path.realpath(place))
     if place.exists() and (not place.is_dir() or any(place.iterdir())):
         raise OptionError(f"{place} is there already: name a folder that is new or empty")
-    # pystac takes a name with a dot for that of a file.
-    part = place.with_name(f"{place.name}-part".replace(".", "-"))
-    shutil.rmtree(part, ignore_errors=True)
-    try:
-        with refusals_in_words(place):
-            items, count = _write_lines(entries, part)
-            _write_items(items, part)
-            os.replace(part, place)
-    finally:
-        shutil.rmtree(part, ignore_errors=True)
+    beside = place / _CATALOG if place.is_dir() else place
+    with refusals_in_words(place), partial_folder(beside) as folder:
+        # pystac takes a name with a dot for that of a file.
+        part = Path(folder, "catalog")
+        items, count = _write_lines(entries, part)
+        _write_items(items, part)
+        _put_in_place(part, place)
     return count
+
+
+def _put_in_place(part: Path, place: Path) -> None:
+    """Give a finished catalogue its name; a folder that is there stays, and gets what is in it."""
+    if not place.is_dir():
+        os.replace(part, place)
+        return
+    # Without its catalogue a folder is no STAC yet: that comes last.
+    for one in sorted(part.iterdir(), key=lambda one: one.name == _CATALOG):
+        os.replace(one, place / one.name)
 
 
 def _write_lines(entries: Iterable[Entry], folder: Path) -> tuple[dict[str, _Item], int]:

@@ -21,6 +21,8 @@ EXTENSION = "urn:acutance:stac:mtf:v1.0.0"
 VIEW = "https://stac-extensions.github.io/view/v1.0.0/schema.json"
 
 _DIGEST = 12
+_LONGEST = 200
+"""Bytes of a name: 255 less digest and ending."""
 _VIEW_FIELDS = {
     "view:incidence_angle": "view_zenith_deg",
     "view:azimuth": "view_azimuth_deg",
@@ -40,6 +42,9 @@ def item_name(image: ImageEntry) -> str:
     """The name of an image's item: that of its file, and a digest of all that is known of it."""
     stem = PurePosixPath(file_name(image.path) or "image").stem
     safe = re.sub(r"[^\w-]+", "-", stem).strip("-") or "image"
+    # A folder and a file are called by it, and the names of files end somewhere.
+    while len(safe.encode()) > _LONGEST:
+        safe = safe[:-1]
     return f"{safe}-{image_identity(image)[:_DIGEST]}"
 
 
@@ -50,8 +55,12 @@ def image_properties(image: ImageEntry) -> dict[str, Any]:
         found["platform"] = image.sensor
     if image.gsd_m is not None:
         found["gsd"] = min(image.gsd_m)
-    angles = {name: getattr(image, field) for name, field in _VIEW_FIELDS.items()}
-    return found | {name: angle for name, angle in angles.items() if angle is not None}
+    for name, field in _VIEW_FIELDS.items():
+        angle = getattr(image, field)
+        if angle is not None:
+            # The extension has azimuths from 0 to 360 degrees.
+            found[name] = angle % 360.0 if name.endswith("azimuth") else angle
+    return found
 
 
 def item_numbers(entry: Entry) -> Iterator[tuple[str, dict[str, Any]]]:

@@ -16,6 +16,7 @@ from acutance.archive.columns import Columns
 from acutance.archive.natural_order import natural_key
 from acutance.archive.restored_images import restored_notes
 from acutance.archive.trends.gsd import SAME_GSD, gsd_classes
+from acutance.archive.trends.possible_dates import impossible_date_notes, possible_dates
 from acutance.archive.trends.series import Series
 from acutance.curves import MAIN_NUMBERS, METRICS
 from acutance.curves.grid import Floats
@@ -212,7 +213,10 @@ def _series(rows: Columns, metric: str, mask: NDArray[np.bool_], size: str | Non
         **target_codes(rows, mask),
         image_names={number: name for number, name in names.items() if name is not None},
         name=_title(rows, mask, size, rows["orientation"][mask][0]),
-        notes=(*_unnamed(rows, mask), *_mixed(rows, mask), *restored_notes(rows, mask)),
+        notes=(
+            *_unnamed(rows, mask), *_mixed(rows, mask), *restored_notes(rows, mask),
+            *impossible_date_notes(rows, mask),
+        ),
     )  # fmt: skip
 
 
@@ -265,7 +269,8 @@ def random_and_systematic(
 
 
 def years_of(acquired: NDArray[np.datetime64]) -> Floats:
-    """Years with decimals; ``nan`` where there is no date."""
+    """Years with decimals; ``nan`` where there is no date, or one that no image can have."""
+    acquired = possible_dates(acquired)
     year = acquired.astype("datetime64[Y]")
     begin, end = (one.astype("datetime64[us]") for one in (year, year + 1))
     return np.asarray(1970 + year.astype(float) + (acquired - begin) / (end - begin))

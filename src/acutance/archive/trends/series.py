@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from calendar import isleap
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from datetime import UTC, date, datetime, timedelta
+from datetime import MAXYEAR, UTC, date, datetime, timedelta
 from typing import Any
 
 import numpy as np
@@ -20,25 +21,32 @@ from acutance.errors import OptionError
 __all__ = ["Event", "Series", "date_of", "decimal_year", "moment_of"]
 
 
+_LAST = datetime.max.replace(tzinfo=UTC) - timedelta(seconds=1)
+
+
 def decimal_year(when: datetime | date | str) -> float:
     """A moment (UTC) as a year with decimals: 2 July 2023, noon, is 2023.5."""
     moment = as_utc(when)
     begin = datetime(moment.year, 1, 1, tzinfo=UTC)
-    end = datetime(moment.year + 1, 1, 1, tzinfo=UTC)
-    return moment.year + (moment - begin) / (end - begin)
+    return moment.year + (moment - begin) / _length(moment.year)
 
 
 def moment_of(year: float) -> datetime:
     """The moment (UTC) of a year with decimals."""
-    begin = datetime(int(year), 1, 1, tzinfo=UTC)
-    end = datetime(int(year) + 1, 1, 1, tzinfo=UTC)
-    return begin + (year % 1) * (end - begin)
+    if year > MAXYEAR + 1 - 1e-10:
+        # What a float makes of the last moments there are.
+        return _LAST
+    return datetime(int(year), 1, 1, tzinfo=UTC) + (year % 1) * _length(int(year))
 
 
 def date_of(year: float) -> date:
     """The day of a year with decimals."""
     # Half a second more: midnight stays on its day.
-    return (moment_of(year) + timedelta(seconds=0.5)).date()
+    return (min(moment_of(year), _LAST) + timedelta(seconds=0.5)).date()
+
+
+def _length(year: int) -> timedelta:
+    return timedelta(days=365 + isleap(year))
 
 
 @dataclass(frozen=True)

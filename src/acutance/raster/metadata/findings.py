@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
 
 from acutance.raster.gsd import GSD_RANGE_M
+from acutance.raster.metadata.times import is_possible
 
 __all__ = ["ANGLES", "FIELDS", "Findings", "Stated", "find", "lon_lat", "number", "word"]
 
@@ -94,6 +95,8 @@ def find(
 def _is_possible(name: str, value: Any) -> bool:
     if name == "gsd_m":
         return all(GSD_RANGE_M[0] <= one <= GSD_RANGE_M[1] for one in value)
+    if name == "acquired":
+        return is_possible(value)
     low, high = ANGLES.get(name, (None, None))
     return low is None or high is None or low <= value <= high
 

@@ -6,7 +6,7 @@ import re
 from calendar import isleap
 from datetime import UTC, date, datetime, timedelta
 
-__all__ = ["has_zone", "is_day", "time_or_day", "utc_time"]
+__all__ = ["has_zone", "is_day", "is_possible", "possible_days", "time_or_day", "utc_time"]
 
 _COMPACT = re.compile(r"^(\d{4})(\d\d)(\d\d)[T ]?(\d\d)(\d\d)(\d\d)(?:\.(\d+))?(Z?)$")
 _DAY = re.compile(r"^(\d{4})([-:/]?)(\d\d)\2(\d\d)Z?$")
@@ -98,6 +98,20 @@ def time_or_day(text: object) -> datetime | date | None:
 def is_day(when: datetime | date) -> bool:
     """Whether a moment is known to the day only."""
     return not isinstance(when, datetime)
+
+
+def possible_days() -> tuple[date, date]:
+    """First and last day an image can be of: since there are satellites, until tomorrow.
+
+    The last is that of UTC: a day without a time may be of a place where it is tomorrow already.
+    """
+    return date(_YEARS[0], 1, 1), datetime.now(UTC).date() + timedelta(days=1)
+
+
+def is_possible(when: datetime | date) -> bool:
+    """Whether an image can be of a day, or of a moment in UTC (`possible_days`)."""
+    first, last = possible_days()
+    return first <= (when.date() if isinstance(when, datetime) else when) <= last
 
 
 def has_zone(text: object) -> bool:
