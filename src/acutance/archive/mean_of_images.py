@@ -72,8 +72,7 @@ def _with_targets(found: WeightedMean, effects: TargetEffects, images: ImageMean
     log_weight += [_log_density(effects.given(std), images, level) for std in stds.tolist()]
     share = np.exp(log_weight - log_weight.max())
     share /= share.sum()
-    squares = float((effects.share.mean(axis=0) ** 2).sum())
-    variance = found.mean.std**2 + squares * stds**2
+    variance = found.mean.std**2 + stds**2 / effects.equal_targets
     density = NormalMixture(share, np.full(stds.size, found.mean.value), np.sqrt(variance))
     return replace(found, mean=density.estimate(found.mean.lowest))
 

@@ -200,7 +200,7 @@ def _by_trend(requirement: Requirement, trend: Trend) -> Answer:
     mean = density.estimate(lowest_of(trend.metric))
     found = _answer(
         requirement, trend.name, met, mean, date_of(year), trend.images.images, square * lost,
-        trend.images.systematic_std,
+        float(np.hypot(trend.images.systematic_std, posterior.targets_std)),
         " ".join(filter(None, (
             season_words(trend), *_skewed(requirement, mean, below, trend), *trend.notes
         ))),

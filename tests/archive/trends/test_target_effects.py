@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from acutance.archive.mean_of_images import mean_of_images
+from acutance.archive.specification import Requirement
+from acutance.archive.specification_check import check_requirement
 from acutance.archive.trends import Series, Trend, fit_trend
 from acutance.archive.trends.target_effects import TargetEffects, effects_and_images
 
@@ -143,8 +145,19 @@ def test_images_are_told_as_the_mean_of_all_targets_would_have_them() -> None:
     assert again.level == trend.level
     assert again.posterior.target_std == trend.posterior.target_std
     earlier = trend.to_dict()
-    del earlier["posterior"]["target_std"]
+    for name in ("target_std", "targets"):
+        del earlier["posterior"][name]
     assert Trend.from_dict(earlier).posterior.target_std == 0
+
+
+def test_more_images_of_the_same_targets_do_not_answer_a_requirement() -> None:
+    series = steady("random", 8)
+    requirement = Requirement(metric="mtf_nyquist", minimum=0.99 * LEVEL)
+    found = check_requirement(requirement, series)
+    assert found.word == "cannot be told yet"
+    assert found.more_images is None
+    nameless = check_requirement(requirement, replace(series, target=None))
+    assert nameless.more_images is not None
 
 
 def test_very_many_images_are_joined_with_their_targets() -> None:

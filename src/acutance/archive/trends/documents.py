@@ -24,6 +24,7 @@ def posterior_document(posterior: TrendPosterior) -> dict[str, Any]:
     document: dict[str, Any] = strict_json({
         "unit": posterior.unit,
         "target_std": posterior.target_std,
+        "targets": posterior.targets,
         "centre": posterior.design.centre,
         "events": [
             {"when": str(event.when), "name": event.name, "changes_drift": event.changes_drift}
@@ -55,5 +56,6 @@ def read_posterior(document: Mapping[str, Any]) -> TrendPosterior:
         covariance=covariance,
         # Documents of earlier versions know of no targets.
         target_std=document.get("target_std", 0.0),
+        targets=document.get("targets", 1.0),
         **columns,
     )

@@ -57,6 +57,8 @@ class TrendPosterior(ShortRepr):
         Probability of a drift with 0, 1, 2, 3 steps (first row), and of none with them.
     target_std : float
         Mean deviation between targets that come again; 0 where none do.
+    targets : float
+        As many equal ones have as much in common as those of the images.
     """
 
     design: Design
@@ -72,6 +74,12 @@ class TrendPosterior(ShortRepr):
     degrees: Floats
     hypothesis: Floats
     target_std: float = 0.0
+    targets: float = 1.0
+
+    @property
+    def targets_std(self) -> float:
+        """What targets add to the deviation of the level, which more images of them leave."""
+        return self.target_std / float(np.sqrt(self.targets))
 
     @property
     def step_probability(self) -> Floats:
@@ -177,7 +185,8 @@ def trend_posterior(
     weight /= weight.sum()
     each = weight[:, None] * np.array([family.step_probability for family in families])
     hypothesis = np.array([each[:-1].sum(axis=0), each[-1]])
-    return _joined(families, weight, design, unit, hypothesis)
+    found, effect = _joined(families, weight, design, unit, hypothesis)
+    return replace(found, targets=shared.equal_targets), effect
 
 
 def _unit(value: Floats) -> float:

@@ -96,6 +96,12 @@ class TargetEffects:
         """Whether there are any."""
         return self.pull.size > 0
 
+    @property
+    def equal_targets(self) -> float:
+        """As many equal ones have as much in common: the images' mean is no better than theirs."""
+        squares = float((self.share.mean(axis=0) ** 2).sum())
+        return 1 / squares if squares > 0 else 1.0
+
     def given(self, std: float) -> EffectsGiven:
         """The effects if they have this standard deviation.
 
