@@ -154,7 +154,7 @@ class _Matched(NamedTuple):
     rms_px: float
 
     @property
-    def count(self) -> int:
+    def matches(self) -> int:
         """How many sources are matched."""
         return np.unique(self.source).size
 
@@ -172,11 +172,11 @@ def _common_shift(places: Floats, surveyed: Floats) -> tuple[_Matched, Floats | 
     tried = [_matched(tree, surveyed, shift) for shift in (np.zeros(2), *proposed)]
     # A few points have a source somewhere after many a shift.
     least = max(_MIN_POINTS, 0.5 * min(len(places), len(surveyed)))
-    likely = [one for one in tried if one.count >= least] or tried[:1]
-    most = max(one.count for one in likely)
-    settled = [_settled(tree, surveyed, one) for one in likely if one.count == most]
-    most = max(one.count for one in settled)
-    settled = [one for one in settled if one.count == most]
+    likely = [one for one in tried if one.matches >= least] or tried[:1]
+    most = max(one.matches for one in likely)
+    settled = [_settled(tree, surveyed, one) for one in likely if one.matches == most]
+    most = max(one.matches for one in settled)
+    settled = [one for one in settled if one.matches == most]
     closest_px = min(one.rms_px for one in settled)
     close = [one for one in settled if one.rms_px <= closest_px + _AS_NEAR_PX]
     close.sort(key=lambda one: one.length_px)
