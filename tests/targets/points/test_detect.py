@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter
 
 from acutance import optics, simulate
 from acutance.errors import TargetError
-from acutance.targets.points.detect import find_spots, match_spots, sort_spots
+from acutance.targets.points.detect import find_spots, sort_spots
+from acutance.targets.points.match_places import match_spots
 from acutance.targets.points.stamps import cut_stamps
 
 SENSOR = optics.Sensor([optics.Gaussian(0.45), optics.Detector()])
@@ -132,3 +135,21 @@ def test_a_source_without_a_pixel_is_refused(scene):
     # Found by fuzz.py, seed 12, draws 287 and 1713.
     with pytest.raises(TargetError, match=r"row 20\.3, column 20\.1 has no pixel of its own"):
         cut_stamps(np.where(np.indices(scene.shape)[1] < 40, np.nan, scene), PLACES[:2], 8.0)
+
+
+@pytest.mark.parametrize("toward", range(0, 360, 40))
+def test_places_are_matched_to_a_pixel_and_a_half_in_every_direction(scene, toward):
+    """From the centroid: the brightest pixel is up to .7 px from it."""
+    angle = np.radians(toward)
+    spots, missing = match_spots(
+        find_spots(scene)[0], PLACES + 1.45 * np.array([np.sin(angle), np.cos(angle)])
+    )
+    assert len(spots) == len(PLACES)
+    assert missing == ()
+
+
+def test_a_place_too_far_from_the_light_is_told_how_far_that_is(scene):
+    missing = match_spots(find_spots(scene)[0], PLACES[:1] + np.array([2.4, 0.0]))[1]
+    assert re.search(r"is 2\.[345] px away, places are needed to 1\.5 px", missing[0].message)
+    empty = match_spots(find_spots(scene)[0], np.array([[40.0, 40.0]]))[1]
+    assert "no light stands out" in empty[0].message

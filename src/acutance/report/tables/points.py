@@ -89,10 +89,11 @@ def _survey_table(survey: SurveyErrors) -> Table:
     total = (MISSING, MISSING) if rmse is None else tuple(f"{value:.2f}" for value in rmse)
     rows.append(("RMSE", "", *(f"{value:.4f}" for value in survey.rmse_px), *total))
     taken = "The mean difference" if survey.reference == "mean" else "That of the first source"
+    across, along = (write_fixed(one, 3) for one in survey.shift_px)
     return Table(
         ("point", "source", "across [px]", "along [px]", "across [cm]", "along [cm]"),
         tuple(rows), "rrrrrr", title="Measured minus surveyed places",
-        notes=(f"{taken} was taken out.",),
+        notes=(f"{taken}, {across} px across and {along} px along, was taken out.",),
     )  # fmt: skip
 
 

@@ -9,10 +9,11 @@ from acutance.curves import Estimate, Mtf, Otf2d
 from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.errors import NoBarsError, OptionError
-from acutance.geometry.angles import wrap_axis
+from acutance.geometry.angles import axis_difference, wrap_axis
 from acutance.geometry.bar_group import Bars
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd, Image
+from acutance.raster.image import AlongTrack
 from acutance.targets.options import chosen_options
 from acutance.targets.periodic.bars_checks import bars_checks
 from acutance.targets.periodic.bars_find import find_bars
@@ -23,7 +24,7 @@ from acutance.targets.periodic.bars_measurement import (
     GroupProfile,
 )
 from acutance.targets.periodic.bars_options import BarsOptions
-from acutance.targets.periodic.bars_pixels import GroupPixels
+from acutance.targets.periodic.bars_pixels import GroupPixels, pixels_about
 from acutance.targets.periodic.bars_readings import GroupReading, central, coltman_mtf, read_group
 from acutance.targets.periodic.fit_bars import BarsSolution, solve_bars
 from acutance.targets.region import RegionPixels, RoiLike, read_region
@@ -77,7 +78,7 @@ def measure_bars(
         region.pixels, groups, contrast=contrast, levels=chosen.levels, robust=chosen.robust
     )
     _require_bars(solved)
-    directions = common_normals(tuple(one.bars for one in solved.groups))
+    directions = common_normals(tuple(one.bars for one in solved.groups), region.info.along_track)
     return BarsMeasurement(
         kind="bars",
         method=method,
@@ -104,10 +105,10 @@ def _groups_of(region: RegionPixels, options: BarsOptions) -> tuple[tuple[Bars, 
 
 def _contrast(image: Floats, groups: tuple[Bars, ...]) -> float:
     """Bars minus background, from the mean of every stated group and of what is next to it."""
-    rows, cols = np.nonzero(np.isfinite(image))
-    value = image[rows, cols]
     found = []
     for number, bars in enumerate(groups, 1):
+        rows, cols = pixels_about(image, bars)
+        value = image[rows, cols]
         across, along = bars.across_and_along(rows.astype(float), cols.astype(float))
         outside_px = np.abs(across) - 0.5 * bars.width_px
         middle = np.abs(along) < 0.4 * bars.length_px
@@ -142,8 +143,8 @@ def _require_bars(solved: BarsSolution) -> None:
         )
 
 
-def common_normals(groups: tuple[Bars, ...]) -> tuple[float, ...]:
-    """Mean normals of groups with nearly the same one, degrees; that of most groups first."""
+def common_normals(groups: tuple[Bars, ...], along_track: AlongTrack = "y") -> tuple[float, ...]:
+    """Mean normals of groups with nearly the same one, degrees; the nearest to across first."""
     kinds: list[list[float]] = []
     for bars in groups:
         for kind in kinds:
@@ -152,7 +153,9 @@ def common_normals(groups: tuple[Bars, ...]) -> tuple[float, ...]:
                 break
         else:
             kinds.append([bars.normal_deg])
-    return tuple(sum(kind) / len(kind) for kind in sorted(kinds, key=len, reverse=True))
+    across_deg = 0.0 if along_track == "y" else 90.0
+    means = [sum(kind) / len(kind) for kind in kinds]
+    return tuple(sorted(means, key=lambda normal: axis_difference(normal, across_deg)))
 
 
 def _details(region: RegionPixels, solved: BarsSolution) -> BarsDetails:

@@ -137,23 +137,26 @@ def _light_of_neighbours(
     places : sequence of (rows, cols)
         The pixels of every group.
     """
-    shape = [max(int(one[axis].max()) for one in places) + 1 + _PADDING_PX for axis in (0, 1)]
+    first = [min(int(one[axis].min()) for one in places) for axis in (0, 1)]
+    last = [max(int(one[axis].max()) for one in places) for axis in (0, 1)]
+    shape = [last[axis] - first[axis] + 1 + _PADDING_PX for axis in (0, 1)]
     v, u = (
         grid.ravel()
         for grid in np.meshgrid(np.fft.fftfreq(shape[0]), np.fft.rfftfreq(shape[1]), indexing="ij")
     )
     fade = np.clip(np.hypot(u, v) / _COARSE_CPP - 1.0, 0.0, 1.0)
     transfer = otf(u, v) * np.cos(0.5 * math.pi * fade) ** 2
-    images = []
-    for bars in groups:
+    total, own = np.zeros(shape), []
+    for bars, (rows, cols) in zip(groups, places, strict=True):
         x, y = unit_vector(bars.normal_deg)
         f, g = u * x + v * y, v * x - u * y
         outline = bars.spectrum(f) * bars.length_px * np.sinc(bars.length_px * g)
-        place = np.exp(-2j * math.pi * (u * bars.col + v * bars.row))
+        place = np.exp(-2j * math.pi * (u * (bars.col - first[1]) + v * (bars.row - first[0])))
         spectrum = (transfer * outline * place).reshape(shape[0], -1)
-        images.append(np.fft.irfft2(spectrum, shape))
-    total = np.sum(images, axis=0)
+        image = np.fft.irfft2(spectrum, shape)
+        total += image
+        own.append(image[rows - first[0], cols - first[1]])
     return [
-        np.asarray((total - own)[rows, cols])
-        for own, (rows, cols) in zip(images, places, strict=True)
+        np.asarray(total[rows - first[0], cols - first[1]] - alone)
+        for alone, (rows, cols) in zip(own, places, strict=True)
     ]

@@ -107,7 +107,8 @@ class BarsMeasurement(Measurement):
     groups : tuple of BarsGroup
         In the order they were stated or found.
     directions_deg : tuple of float
-        Measured directions, across the bars, from the column axis towards the row axis.
+        Measured directions, across the bars, from the column axis towards the row axis; the one
+        nearest to across track first.
         Other directions follow from the prior, which all sensors have in common.
     contrast : Estimate
         Bars minus background, before the sensor.
@@ -120,7 +121,7 @@ class BarsMeasurement(Measurement):
 
     @cached_property
     def normal_response(self) -> Response:
-        """The curves and numbers along the normal of the first direction."""
+        """The curves and numbers along the normal that is nearest to across track."""
         return self.response_at(self.directions_deg[0])
 
     @property

@@ -17,11 +17,12 @@ from acutance.numerics.lookup import CubicLookup
 from acutance.numerics.otf_modes import HIGHEST_CPP, MeanOtf, ProcessModes
 from acutance.targets.periodic.otf_model import all_modes, mode_count
 
-__all__ = ["GroupPixels", "group_columns"]
+__all__ = ["GroupPixels", "group_columns", "pixels_about"]
 
 _SIDE_PX: Final = 8.0
 _END_MARGIN_PX: Final = 5.0
 _STEP_PX: Final = 0.05
+_MAX_COLUMNS: Final = 1 << 31
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +50,7 @@ class GroupPixels:
     @classmethod
     def of(cls, image: Floats, bars: Bars, number: int) -> GroupPixels:
         """The usable pixels between the bars' ends and some way to its sides."""
-        rows, cols = np.nonzero(np.isfinite(image))
+        rows, cols = pixels_about(image, bars)
         across, along = bars.across_and_along(rows.astype(float), cols.astype(float))
         margin = min(_END_MARGIN_PX, 0.25 * bars.length_px)
         kept = np.abs(along) < 0.5 * bars.length_px - margin
@@ -62,6 +63,13 @@ class GroupPixels:
             )
         rows, cols = rows[kept], cols[kept]
         return cls(bars, rows, cols, image[rows, cols], across[kept], along[kept])
+
+    def taken_over(self, before: GroupPixels, values: Floats, new: float) -> Floats:
+        """What pixels had where the group was before, (n,); `new` for those it takes in."""
+        was, now = (one.rows * _MAX_COLUMNS + one.cols for one in (before, self))
+        # Both ascend.
+        place = np.minimum(np.searchsorted(was, now), was.size - 1)
+        return np.where(was[place] == now, values[place], new)
 
     def moved(self, step: Floats) -> Bars:
         """The group where the regression wants it: place, period, direction (radians)."""
@@ -78,6 +86,18 @@ class GroupPixels:
             period_px=period,
             normal_deg=bars.normal_deg + math.degrees(float(np.clip(step[2], -reach, reach))),
         )
+
+
+def pixels_about(image: Floats, bars: Bars) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Rows and columns of the usable pixels of a group, 8 px to its sides, and some more.
+
+    A group is a small part of a large image.
+    """
+    reach = math.ceil(math.hypot(0.5 * bars.length_px, 0.5 * bars.width_px + _SIDE_PX)) + 1
+    top, left = (max(math.floor(place) - reach, 0) for place in (bars.row, bars.col))
+    bottom, right = (max(math.ceil(place) + reach + 1, 0) for place in (bars.row, bars.col))
+    rows, cols = np.nonzero(np.isfinite(image[top:bottom, left:right]))
+    return rows + top, cols + left
 
 
 def group_columns(

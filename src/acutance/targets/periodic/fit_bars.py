@@ -12,6 +12,7 @@ no group is taken for an endless wave. Place, period and direction of every grou
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -29,6 +30,7 @@ from acutance.numerics.otf_modes import MeanOtf, ProcessModes
 from acutance.targets.periodic.bars_ends import TableModes, scattered_light
 from acutance.targets.periodic.bars_pixels import GroupPixels, group_columns
 from acutance.targets.periodic.curvature import find_curvature
+from acutance.targets.periodic.oblique_blur import aligned_or_turned
 from acutance.targets.periodic.otf_model import FittedOtf, level_row, mode_count
 from acutance.targets.periodic.otf_regression import (
     FREE_STD,
@@ -184,16 +186,16 @@ def _fit_otf(
     """
     states = ProcessModes(mean.width_px)
     table_modes = TableModes.of(mean, states)
-    # By group and pixel: a group that moves takes in other pixels, and groups may share some.
-    weights = np.ones((len(groups), *image.shape))
-    all_scattered = np.zeros_like(weights)
+    before = _pixels_of(image, groups)
+    weights = [np.ones(one.value.size) for one in before]
+    all_scattered = [np.zeros(one.value.size) for one in before]
     noise_found = Correlation(1.0, 0.0, 0.0)
     earlier: Posterior | None = None
     for _ in range(_MAX_PASSES):
         pixels = _pixels_of(image, groups)
         ends = np.cumsum([one.value.size for one in pixels])[:-1]
-        weight = np.concatenate(_at_pixels(weights, pixels))
-        scattered = _at_pixels(all_scattered, pixels)
+        weight = np.concatenate(_taken_over(pixels, before, weights, 1.0))
+        scattered = _taken_over(pixels, before, all_scattered, 0.0)
         fitted = _regression(
             pixels, stated, mean, states, contrast, weight, scattered,
             levels, noise_found.inflation, earlier,
@@ -210,8 +212,7 @@ def _fit_otf(
         ):
             break
         groups = tuple(one.moved(_own(fitted, k)[0][2:]) for k, one in enumerate(pixels))
-        _store(weights, pixels, np.split(again, ends))
-        _store(all_scattered, pixels, found)
+        before, weights, all_scattered = pixels, np.split(again, ends), found
         earlier = fitted.posterior
         contrast = _same_sign(fitted.otf.level, contrast)
     seen = None
@@ -221,11 +222,12 @@ def _fit_otf(
         ).otf
         seen = StatedContrast(levels, Estimate(abs(free.level), free.level_std))
     own = [_own(fitted, number) for number in range(len(pixels))]
-    modes = slice(_OWN * len(pixels), None)
+    first = _OWN * len(pixels)
+    modes = slice(first, None)
     bars = contrast * np.concatenate(scattered)
     bars += fitted.design[:, modes] @ fitted.posterior.beta[modes]
     return BarsSolution(
-        otf=fitted.otf,
+        otf=aligned_or_turned(fitted.otf, float(fitted.posterior.prior_std[first + 3])),
         groups=pixels,
         residuals=tuple(np.split(fitted.residual, ends)),
         backgrounds=tuple(float(value[0]) for value, _ in own),
@@ -248,15 +250,16 @@ def _pixels_of(image: Floats, groups: tuple[Bars, ...]) -> tuple[GroupPixels, ..
     return tuple(GroupPixels.of(image, bars, number) for number, bars in enumerate(groups, 1))
 
 
-def _at_pixels(stack: Floats, pixels: tuple[GroupPixels, ...]) -> list[Floats]:
-    """The values of a stack (groups, rows, cols) at the pixels of every group."""
-    return [layer[one.rows, one.cols] for layer, one in zip(stack, pixels, strict=True)]
-
-
-def _store(stack: Floats, pixels: tuple[GroupPixels, ...], values: list[Floats]) -> None:
-    """Write values at the pixels of every group into a stack (groups, rows, cols)."""
-    for layer, one, own in zip(stack, pixels, values, strict=True):
-        layer[one.rows, one.cols] = own
+def _taken_over(
+    pixels: tuple[GroupPixels, ...],
+    before: tuple[GroupPixels, ...],
+    values: Sequence[Floats],
+    new: float,
+) -> list[Floats]:
+    """Values of every group's pixels, after it has moved; of those it takes in `new`."""
+    return [
+        one.taken_over(was, own, new) for one, was, own in zip(pixels, before, values, strict=True)
+    ]
 
 
 def _same_sign(level: float, contrast: float) -> float:

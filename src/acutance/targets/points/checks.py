@@ -20,7 +20,14 @@ from acutance.targets.points.survey import SurveyErrors
 from acutance.targets.processing_checks import PROCESSING_CHECKS, processing_checks
 from acutance.targets.region import RegionPixels, stated_gsd, undeclared_fill
 
-__all__ = ["POINTS_CHECKS", "check_points", "check_positions", "check_survey", "phase_gap_px"]
+__all__ = [
+    "POINTS_CHECKS",
+    "check_points",
+    "check_positions",
+    "check_survey",
+    "check_unmatched_survey",
+    "phase_gap_px",
+]
 
 POINTS_CHECKS = (
     "sources",
@@ -129,7 +136,15 @@ def check_survey(survey: SurveyErrors, limits: Limits) -> Check:
     )
     if survey.rmse_cm is not None:
         found += f", {survey.rmse_cm[0]:.2f} and {survey.rmse_cm[1]:.2f} cm"
+    found += ", after a common shift of {:.2f} and {:.2f} px".format(*survey.shift_px)
+    if survey.rival_px is not None:
+        found += "; one of {:.2f} and {:.2f} px matches as well".format(*survey.rival_px)
     return answer("survey_px", max(across, along), found, limits)
+
+
+def check_unmatched_survey(why: str, limits: Limits) -> Check:
+    """The same where the surveyed places are not those of the sources."""
+    return answer("survey_px", MAX_RATIO, why, limits, advice="")
 
 
 def phase_gap_px(phases: Floats) -> float:

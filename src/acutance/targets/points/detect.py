@@ -3,7 +3,8 @@
 A spot is a local maximum of the image, smoothed a little, that stands out of the noise. Whether
 it is usable is asked one question after the other; what is not is kept with its reason:
 
-- ``edge``: pixels around it are missing;
+- ``edge``: pixels around it are missing. Where others have all of theirs to compare it with, the
+  brightest pixel and its eight neighbours are enough;
 - ``saturated``: a pixel reached the detector's limit;
 - ``hot pixel``: one pixel alone is bright, no light reached its neighbours;
 - ``cosmic ray``: narrower than the other spots in one direction, so no optics made it;
@@ -38,14 +39,13 @@ from acutance.targets.points.moments import (
 )
 from acutance.targets.points.population import Population, sharpest_population
 
-__all__ = ["RejectedSpot", "SortedSpots", "Spot", "find_spots", "match_spots", "sort_spots"]
+__all__ = ["RejectedSpot", "SortedSpots", "Spot", "find_spots", "sort_spots"]
 
 CLEAR_PX: Final = 3
 """Pixels that have to be there on all sides of a source."""
 _SMOOTHING_PX: Final = 0.7
 _BLOCK_PX: Final = 24
 _MAX_SPOTS: Final = 2000
-_MAX_AWAY_PX: Final = 1.5
 _MIN_RING: Final = 16
 
 
@@ -150,26 +150,6 @@ def find_spots(image: Floats) -> tuple[tuple[Spot, ...], Floats, float]:
     found = found[~_lobes(found, smooth[rows[order], cols[order]])]
     spots = tuple(_spot(residual, (row, col), noise) for row, col in found.tolist())
     return spots, residual, noise
-
-
-def match_spots(
-    spots: Sequence[Spot], places: Floats
-) -> tuple[tuple[Spot, ...], tuple[RejectedSpot, ...]]:
-    """The spots nearest to some places, (n, 2), to 1.5 px, and the places that have none."""
-    tops = np.array([one.top for one in spots], float).reshape(-1, 2)
-    matched, missing = [], []
-    for row, col in places.tolist():
-        away = np.hypot(tops[:, 0] - row, tops[:, 1] - col)
-        nearest = spots[int(away.argmin())] if away.size else None
-        if nearest is None or float(away.min()) > _MAX_AWAY_PX:
-            fault = "no light stands out of the noise there"
-        elif nearest in matched:
-            fault = "the source there was named by an earlier place"
-        else:
-            matched.append(nearest)
-            continue
-        missing.append(RejectedSpot(row, col, "no source", fault))
-    return tuple(matched), tuple(missing)
 
 
 def _lobes(tops: NDArray[np.intp], light: Floats) -> NDArray[np.bool_]:
@@ -282,12 +262,16 @@ def sort_spots(
     shapes, population = _compared_shapes(residual, usual, noise)
     mixed = population is not None and population.mixed
     narrow, wide = _usual_variances(shapes, population)
+    comparable = len(usual) >= tuned.MIN_COMPARED
     kept, rejected = [], []
-    for one, fault in zip(spots, single, strict=True):
-        reason = fault
+    for one, reason in zip(spots, single, strict=True):
+        lacking = reason is not None and reason[0] == "edge"
+        if lacking and comparable and not mixed and _has_core(image, residual, one):
+            # Without some pixels moments are too small: the joint fit finds what else is no point.
+            reason = reason if _compared(one.shape, -math.inf, wide) else None
         if reason is None and one.snr < min_snr:
             reason = "faint", f"its peak is {one.snr:.1f} times the noise, {min_snr:g} are asked"
-        if reason is None and len(usual) >= tuned.MIN_COMPARED:
+        if reason is None and comparable and not lacking:
             reason = _compared(shapes[usual.index(one)], narrow, wide)
         if reason is None and population is not None and mixed:
             reason = population.fault(usual.index(one))
@@ -339,20 +323,17 @@ def _own_fault(
     image: Floats, residual: Floats, one: Spot, limit: float, noise: float
 ) -> tuple[str, str] | None:
     """What is wrong with a spot by itself."""
-    row, col = round(one.row), round(one.col)
-    part = residual[max(row - 2, 0) : row + 3, max(col - 2, 0) : col + 3]
-    up, left = np.unravel_index(int(np.argmax(part)), part.shape)
-    row, col = max(row - 2, 0) + int(up), max(col - 2, 0) + int(left)
-    clear = image[max(row - CLEAR_PX, 0) : row + CLEAR_PX + 1]
-    clear = clear[:, max(col - CLEAR_PX, 0) : col + CLEAR_PX + 1]
+    row, col = _brightest_pixel(residual, one)
+    clear = _pixels_around(image, row, col, CLEAR_PX)
     side = 2 * CLEAR_PX + 1
     whole = clear.shape == (side, side) and bool(np.isfinite(clear).all())
+    core = _has_core(image, residual, one)
     # A hot pixel may be at the limit as well; a source at the limit lights its neighbours.
     peak = float(residual[row, col])
-    around = np.abs(residual[max(row - 1, 0) : row + 2, max(col - 1, 0) : col + 2])
+    around = np.abs(_pixels_around(residual, row, col, 1))
     # Eight moduli of noise have this mean, and two of their standard deviations are taken off.
     neighbours = float(around.sum()) - abs(peak) - (8 * 0.80 - 2 * np.sqrt(8.0) * 0.60) * noise
-    if whole and neighbours < tuned.MIN_NEIGHBOUR_SHARE * peak:
+    if core and neighbours < tuned.MIN_NEIGHBOUR_SHARE * peak:
         share = 100 * max(neighbours, 0.0) / peak if peak > 0 else 0.0
         return "hot pixel", f"its neighbours together hold {share:.0f} % of the brightest pixel"
     if np.any(clear[1:-1, 1:-1] >= limit):
@@ -360,6 +341,26 @@ def _own_fault(
     if not whole:
         return "edge", f"pixels within {CLEAR_PX} px of it are missing"
     return None
+
+
+def _brightest_pixel(residual: Floats, one: Spot) -> tuple[int, int]:
+    """The brightest pixel within two of a spot's centroid."""
+    row, col = round(one.row), round(one.col)
+    part = _pixels_around(residual, row, col, 2)
+    up, left = np.unravel_index(int(np.argmax(part)), part.shape)
+    return max(row - 2, 0) + int(up), max(col - 2, 0) + int(left)
+
+
+def _has_core(image: Floats, residual: Floats, one: Spot) -> bool:
+    """Whether a spot's brightest pixel and its eight neighbours are there."""
+    core = _pixels_around(image, *_brightest_pixel(residual, one), 1)
+    return core.size == 9 and bool(np.isfinite(core).all())
+
+
+def _pixels_around(image: Floats, row: int, col: int, reach_px: int) -> Floats:
+    """Those up to so many rows and columns away."""
+    part = image[max(row - reach_px, 0) : row + reach_px + 1]
+    return part[:, max(col - reach_px, 0) : col + reach_px + 1]
 
 
 def _compared(shape: SpotShape, narrow: float, wide: float) -> tuple[str, str] | None:

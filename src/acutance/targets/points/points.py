@@ -18,7 +18,12 @@ from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd, Image
 from acutance.targets.check import Check, Checks
 from acutance.targets.options import chosen_options, published_options, require_known_method
-from acutance.targets.points.checks import check_points, check_positions, check_survey
+from acutance.targets.points.checks import (
+    check_points,
+    check_positions,
+    check_survey,
+    check_unmatched_survey,
+)
 from acutance.targets.points.detect import RejectedSpot
 from acutance.targets.points.extent import excess_variances
 from acutance.targets.points.first_fit import FirstFit, fit_first_gaussian, unlike_sources
@@ -174,7 +179,8 @@ def measure_points(
     positions : (n, 2) array_like, optional
         Approximate places (row, col) in the whole image, to 1.5 px; found in the image without.
     surveyed : (n, 2) array_like, optional
-        Surveyed places (row, col), to be compared with the measured ones.
+        Surveyed places (row, col), to be compared with the measured ones; off by up to 20 px as a
+        whole.
     survey_reference : {"mean", "first"}, optional
         Which shift is taken out of the comparison: the mean, or the first source's as in the
         report of 2003.
@@ -229,10 +235,15 @@ def _with_survey(
     reference: SurveyReference,
     options: PointsOptions,
 ) -> PointsMeasurement:
-    survey = survey_errors(
-        measurement.positions, surveyed, pixel_m=measurement.image.pixel_gsd_m,
-        reference=reference, along_track=measurement.image.along_track,
-    )  # fmt: skip
+    try:
+        survey = survey_errors(
+            measurement.positions, surveyed, pixel_m=measurement.image.pixel_gsd_m,
+            reference=reference, along_track=measurement.image.along_track,
+        )  # fmt: skip
+    except OptionError as error:
+        # The survey alone is wrong: what was measured holds.
+        unmatched = check_unmatched_survey(str(error), options.limits)
+        return replace(measurement, checks=(*measurement.checks, unmatched))
     checks = (*measurement.checks, check_survey(survey, options.limits))
     return replace(measurement, survey=survey, checks=checks)
 

@@ -15,10 +15,10 @@ from acutance.targets.points.detect import (
     RejectedSpot,
     Spot,
     find_spots,
-    match_spots,
     sort_spots,
 )
 from acutance.targets.points.extent import same_extent
+from acutance.targets.points.match_places import match_spots
 from acutance.targets.points.options import PointsOptions
 from acutance.targets.region import RegionPixels
 
@@ -153,7 +153,7 @@ def cover_rejected(image: Floats, rejected: Sequence[RejectedSpot]) -> Floats:
     height, width = image.shape
     clean = image.copy()
     for one in rejected:
-        if one.reason not in ("no source", "edge"):
+        if one.reason != "no source":
             reach = tuned.COVERED_PX.get(one.reason, tuned.COVERED_ELSE_PX)
             top, left = max(int(one.row - reach), 0), max(int(one.col - reach), 0)
             bottom = min(int(one.row + reach) + 2, height)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Final, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +17,12 @@ from acutance.raster.image import AlongTrack
 __all__ = ["SurveyErrors", "SurveyReference", "survey_errors"]
 
 SurveyReference = Literal["mean", "first"]
-_NEAREST_PX = 2.0
-_MIN_POINTS = 2
+_NEAREST_PX: Final = 2.0
+_MIN_POINTS: Final = 2
+_REACH_PX: Final = 20.0
+"""A survey may be off by so much as a whole."""
+_AS_NEAR_PX: Final = 0.1
+"""Root mean square errors after two shifts that differ by less do not tell them apart."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +41,10 @@ class SurveyErrors(ShortRepr):
         Measured minus surveyed.
     gsd_m : (float, float) or None
         GSD across and along in metres.
+    shift_px : (float, float)
+        What was taken out, across and along.
+    rival_px : (float, float) or None
+        Another shift that matches as many points as closely, as in a regular grid.
     """
 
     reference: SurveyReference
@@ -45,6 +53,8 @@ class SurveyErrors(ShortRepr):
     across_px: Floats
     along_px: Floats
     gsd_m: tuple[float, float] | None
+    shift_px: tuple[float, float]
+    rival_px: tuple[float, float] | None = None
 
     @property
     def rmse_px(self) -> tuple[float, float]:
@@ -70,6 +80,8 @@ class SurveyErrors(ShortRepr):
         errors, rmse = self.errors_cm, self.rmse_cm
         return {
             "reference": self.reference,
+            "shift_px": list(self.shift_px),
+            "rival_px": None if self.rival_px is None else list(self.rival_px),
             "source": self.source.tolist(),
             "point": self.point.tolist(),
             "across_px": self.across_px.tolist(),
@@ -95,7 +107,8 @@ def survey_errors(
 ) -> SurveyErrors:
     """Compare positions, each surveyed point with the measured source nearest to it.
 
-    The survey may be off as a whole: its shift is found from all points first.
+    The survey may be off as a whole, by up to 20 px: its shift is the one after which most points
+    have a source within 2 px, of several as close the smallest.
 
     Parameters
     ----------
@@ -112,23 +125,76 @@ def survey_errors(
     OptionError
         If fewer than two points find a source within 2 px.
     """
-    tree = cKDTree(places)
-    shift = np.zeros(2)
-    for _ in range(3):
-        away, source = tree.query(surveyed + shift)
-        near = away <= _NEAREST_PX
-        if near.any():
-            shift = np.median(places[source[near]] - surveyed[near], axis=0)
-    away, source = tree.query(surveyed + shift)
-    kept = np.flatnonzero(away <= _NEAREST_PX)
+    best, rival = _common_shift(places, surveyed)
+    kept, source = best.point, best.source
     if kept.size < _MIN_POINTS:
         raise OptionError(
             f"{kept.size} of {surveyed.shape[0]} surveyed positions lie within {_NEAREST_PX:g} px "
-            f"of a measured source, at least {_MIN_POINTS} are needed: check their units and the "
-            "region"
+            f"of a measured source, at least {_MIN_POINTS} are needed, and no common shift of up "
+            f"to {_REACH_PX:g} px brings half of them there: check their units and the region"
         )
-    error = places[source[kept]] - surveyed[kept]
-    error = error - (error[0] if reference == "first" else error.mean(axis=0))
+    error = places[source] - surveyed[kept]
+    shift = error[0] if reference == "first" else error.mean(axis=0)
+    error = error - shift
     across, along = (1, 0) if along_track == "y" else (0, 1)
-    gsd_m = None if pixel_m is None else (pixel_m[across], pixel_m[along])
-    return SurveyErrors(reference, source[kept], kept, error[:, across], error[:, along], gsd_m)
+    return SurveyErrors(
+        reference, source, kept, error[:, across], error[:, along],
+        None if pixel_m is None else (pixel_m[across], pixel_m[along]),
+        (float(shift[across]), float(shift[along])),
+        None if rival is None else (float(rival[across]), float(rival[along])),
+    )  # fmt: skip
+
+
+class _Matched(NamedTuple):
+    """Surveyed points that have a source nearby after a shift, (row, col)."""
+
+    shift: Floats
+    point: NDArray[np.intp]
+    source: NDArray[np.intp]
+    rms_px: float
+
+    @property
+    def matches(self) -> int:
+        """How many sources are matched."""
+        return np.unique(self.source).size
+
+    @property
+    def length_px(self) -> float:
+        """Length of the shift."""
+        return float(np.hypot(*self.shift))
+
+
+def _common_shift(places: Floats, surveyed: Floats) -> tuple[_Matched, Floats | None]:
+    """The shift that matches most points, and another one that does so as well."""
+    tree = cKDTree(places)
+    proposed = (places[np.newaxis] - surveyed[:, np.newaxis]).reshape(-1, 2)
+    proposed = np.unique(np.rint(2 * proposed[np.hypot(*proposed.T) <= _REACH_PX]) / 2, axis=0)
+    tried = [_matched(tree, surveyed, shift) for shift in (np.zeros(2), *proposed)]
+    # A few points have a source somewhere after many a shift.
+    least = max(_MIN_POINTS, 0.5 * min(len(places), len(surveyed)))
+    likely = [one for one in tried if one.matches >= least] or tried[:1]
+    most = max(one.matches for one in likely)
+    settled = [_settled(tree, surveyed, one) for one in likely if one.matches == most]
+    most = max(one.matches for one in settled)
+    settled = [one for one in settled if one.matches == most]
+    closest_px = min(one.rms_px for one in settled)
+    close = [one for one in settled if one.rms_px <= closest_px + _AS_NEAR_PX]
+    close.sort(key=lambda one: one.length_px)
+    best = close[0]
+    away = (one.shift for one in close if np.hypot(*(one.shift - best.shift)) > _NEAREST_PX)
+    return best, next(away, None)
+
+
+def _settled(tree: cKDTree, surveyed: Floats, found: _Matched) -> _Matched:
+    """The same, the shift made the median of the differences of what is matched."""
+    for _ in range(3):
+        if found.point.size:
+            shift = np.median(tree.data[found.source] - surveyed[found.point], axis=0)
+            found = _matched(tree, surveyed, shift)
+    return found
+
+
+def _matched(tree: cKDTree, surveyed: Floats, shift: Floats) -> _Matched:
+    away, source = tree.query(surveyed + shift)
+    point = np.flatnonzero(away <= _NEAREST_PX)
+    return _Matched(shift, point, source[point], _rms(away[point]) if point.size else 0.0)

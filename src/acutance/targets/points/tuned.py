@@ -111,7 +111,9 @@ UNLIKE_SHARE: Final = 0.05
 TIMES_USUAL: Final = 3.0
 """A source is unlike the others where the common blur leaves so large a share of its peak, and so
 many times what is usual: diffraction leaves up to 0.03 of every source."""
-COVERED_PX: Final = {"saturated": 9.0, "blended": 4.0, "hot pixel": 1.0, "cosmic ray": 3.0}
+COVERED_PX: Final = {
+    "saturated": 9.0, "blended": 4.0, "edge": 4.0, "hot pixel": 1.0, "cosmic ray": 3.0,
+}  # fmt: skip
 COVERED_ELSE_PX: Final = 2.5
 """Radius around a rejected spot whose pixels are left out, by the reason."""
 
