@@ -237,12 +237,7 @@ class _Residuals:
         """Normal equations of every region, tile means left out.
 
         Also, (k, regions), what their right sides change by if the ground beyond the image is
-        another.
-
-        Raises
-        ------
-        TargetError
-            If no tile keeps enough low pixels.
+        another. A TargetError, if no tile keeps enough low pixels.
         """
         found: dict[int, Normal] = {}
         for tile in self.tiles():

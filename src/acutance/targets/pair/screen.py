@@ -144,8 +144,8 @@ def screened(
         return ScreenedTiles(tiles, {}, 0)
     masks: dict[tuple[int, int], NDArray[np.bool_]] = {}
     for one in off:
-        mask = masks.setdefault(one.tile, np.zeros(shapes[one.tile], bool))
-        mask[one.rows, one.cols] = one.taken_out(gain, noise)
+        whole = masks.setdefault(one.tile, np.zeros(shapes[one.tile], bool))
+        whole[one.rows, one.cols] = one.taken_out(gain, noise)
     lost = sum(
         int((core(mask) & np.isfinite(core(tile.low))).sum())
         for tile in tiles()

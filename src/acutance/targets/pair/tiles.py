@@ -318,7 +318,9 @@ class PairTiles:
         return np.asarray(i[:, None] * across + j[None, :], np.intp)
 
 
-def _resampled(values: Floats, down: Floats, across: Floats) -> Floats:
+def _resampled(
+    values: Floats, down: Floats | NDArray[np.intp], across: Floats | NDArray[np.intp]
+) -> Floats:
     """Samples taken by their numbers, or by the weights of all."""
     values = values[down.astype(np.intp)] if down.ndim == 1 else down @ values
     if across.ndim == 1:
