@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from acutance.curves.grid import Floats
-from acutance.errors import NoDataError, RegionError
+from acutance.errors import ImageError, NoDataError, RegionError
 from acutance.numerics.clipping import NOT_CLIPPED, ClipLevels
 from acutance.raster import Box, Fill, Gsd, Image, Region, find_fill
 from acutance.raster.gsd import gsd_in_words
@@ -37,6 +37,8 @@ __all__ = [
 
 _MAX_PIXELS = 9_000_000
 _MIN_SIDE_PX = 8
+_MAX_SIZE = 1e75
+"""Largest value of an image, and one over the smallest: curvatures are fourth powers."""
 _MAX_GSD_ROUNDING = 0.05
 
 RoiLike = Region | Box | tuple[int, int, int, int] | Floats | None
@@ -177,12 +179,35 @@ def read_data(image: Image, box: Box) -> tuple[Floats, Fill | None]:
     """The pixels of a box that hold data, (height, width), NaN elsewhere.
 
     Undeclared fill is no data, and is returned beside them where there is some.
+
+    Raises
+    ------
+    ImageError
+        If the values are so large or so small that powers of them cannot be represented.
     """
     pixels = image.read(box)
     fill = find_fill(image, box, pixels)
     if fill is not None:
         pixels[fill.mask] = np.nan
+    _require_units(pixels)
     return pixels, fill
+
+
+def _require_units(pixels: Floats) -> None:
+    """Refuse an image in absurd units; a few absurd values among others are the fits' to find."""
+    size = np.abs(pixels[np.isfinite(pixels)])
+    largest = float(size.max(initial=0.0))
+    if 0 < largest < 1 / _MAX_SIZE:
+        found = f"the largest value of the region is {largest:.3g}"
+    elif largest > _MAX_SIZE and (usual := float(np.median(size[size > 0]))) > _MAX_SIZE:
+        found = f"the values of the region are about {usual:.3g}"
+    else:
+        return
+    raise ImageError(
+        f"{found}, where only {1 / _MAX_SIZE:g} to {_MAX_SIZE:g} can be measured, as powers of the "
+        "contrast have to be represented: multiply the image by a constant, or check its units, "
+        "its scale factor and its nodata value"
+    )
 
 
 def undeclared_fill(fills: Sequence[Fill | None], limits: Limits) -> Check:

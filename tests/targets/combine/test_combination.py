@@ -127,7 +127,10 @@ def test_a_document_without_covariance_is_used_and_said_so(edges):
     messages = {check.name: check.message for check in found.checks}
     assert [check.name for check in found.failed_checks] == ["assumed_covariance"]
     assert messages["assumed_covariance"].startswith("1 measurement without covariance: ")
-    assert messages["shared_targets"] == "no pairs of the same pixels"
+    assert messages["shared_targets"] == (
+        "no pairs of the same pixels; 3 measurements are of arrays in memory, which are not "
+        "compared"
+    )
     assert abs(found.across.mtf_nyquist.value - SENSOR.mtf()(0.5).value) < 0.03
 
 

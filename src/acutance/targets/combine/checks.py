@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
-from acutance.geometry.angles import axis_difference, direction_difference
+from acutance.geometry.angles import axis_difference
 from acutance.targets.check import Check, Limits, answer
 from acutance.targets.combine.combined_measurement import CombinedPart
 from acutance.targets.combine.fit import CombinedFit
 from acutance.targets.combine.inputs import MeasuredInput
+from acutance.targets.combine.shared_pixels import pairs_of_same_pixels
 
 __all__ = ["COMBINE_CHECKS", "check_combination", "count_directions", "direction_gap_deg"]
 
@@ -24,8 +25,6 @@ COMBINE_CHECKS = (
 """Names of all checks of a combination."""
 
 _DISTINCT_DEG = 15.0
-_SAME_LINE_PX = 3.0
-_SAME_LINE_DEG = 5.0
 _SURE_STDS = 2.0
 
 
@@ -60,7 +59,7 @@ def check_combination(
         _beyond(parts, limits),
         answer("directions", directions, f"{directions} directions were measured", limits),
         _counted("failed_inputs", failed, "whose own checks failed", limits),
-        _counted("shared_targets", _shared(inputs), "of the same pixels", limits, "pair"),
+        _shared(inputs, limits),
         _counted("assumed_covariance", assumed, "without covariance", limits),
         _counted("unknown_gsd", without_gsd, "without a GSD", limits),
     )
@@ -149,38 +148,18 @@ def _beyond(parts: Sequence[CombinedPart], limits: Limits) -> Check:
     return answer("beyond_members", value, found, limits)
 
 
-def _shared(inputs: Sequence[MeasuredInput]) -> list[str]:
-    """Pairs that measured the same target of the same image."""
-    return [
-        f"{other.name} and {one.name}"
-        for i, one in enumerate(inputs)
-        for other in inputs[:i]
-        if _same_target(one, other)
-    ]
-
-
-def _same_target(one: MeasuredInput, other: MeasuredInput) -> bool:
-    """Whether two measurements took the same target of the same image."""
-    paths = one.image.path, other.image.path
-    # Two runs write the name of one file as they were given it.
-    if None in paths or len(set(map(os.path.realpath, filter(None, paths)))) > 1:
-        return False
-    if one.kind != other.kind:
-        return "scene" in (one.kind, other.kind) and _overlap(one.image.roi, other.image.roi)
-    if len(one.place) != len(other.place):
-        return False
-    if len(one.place) == 3:
-        turn = direction_difference(one.place[2], other.place[2])
-        apart = np.hypot(one.place[0] - other.place[0], one.place[1] - other.place[1])
-        return bool(turn < _SAME_LINE_DEG and apart < _SAME_LINE_PX)
-    return one.place == other.place
-
-
-def _overlap(one: tuple[int, int, int, int], other: tuple[int, int, int, int]) -> bool:
-    """Whether two regions (row, col, height, width) share pixels: a scan uses every edge it can."""
-    return all(
-        max(one[i], other[i]) < min(one[i] + one[i + 2], other[i] + other[i + 2]) for i in (0, 1)
+def _shared(inputs: Sequence[MeasuredInput], limits: Limits) -> Check:
+    """Pairs of the same pixels; of arrays in memory nothing tells which image they are of."""
+    found = _counted(
+        "shared_targets", pairs_of_same_pixels(inputs), "of the same pixels", limits, "pair"
     )
+    unknown = sum(one.image.path is None for one in inputs)
+    if unknown < 2:
+        return found
+    message = (
+        f"{found.message}; {unknown} measurements are of arrays in memory, which are not compared"
+    )
+    return replace(found, message=message)
 
 
 def _directions(inputs: Sequence[MeasuredInput]) -> Floats:

@@ -72,14 +72,6 @@ class MeasuredInput(ShortRepr):
         return tuple(check.name for check in failed if check.severity != "note")
 
     @property
-    def place(self) -> tuple[float, ...]:
-        """Where in the image: row, column and normal of a straight target, else the region."""
-        line = self.record.document.get("line")
-        if line is None:
-            return tuple(map(float, self.image.roi))
-        return tuple(float(line[key]) for key in ("row", "col", "normal_deg"))
-
-    @property
     def has_all_directions(self) -> bool:
         """Whether it shows all directions."""
         return self.slices.normal_deg.size > 1

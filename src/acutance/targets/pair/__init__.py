@@ -1,8 +1,9 @@
 """Two images of one ground at different resolution: the MTF of the coarser one.
 
-In the order data take: `grid` (how the images lie on each other), `tiles` (what is read; `tile`
-holds one), `register`, `screen` (pixels that do not fit), `gaussian_fit` (a Gaussian with the low
-sensor's detector, `axis_gaussian`), `kernel_fit` (a free kernel, `kernel_basis`, with its
+In the order data take: `grid` (how the images lie on each other), `tiles` (what is read, without
+`defects`; `tile` holds one), `register`, `screen` (pixels that do not fit), `gaussian_fit` (a
+Gaussian with the low sensor's detector, `axis_gaussian`), `kernel_fit` (a free kernel,
+`kernel_basis`, with its
 `kernel_prior` and `kernel_covariance`), `noise`, `spectral_ratio` (the published way), `kernel_otf`
 (kernel to OTF), `reference` (the high image's own MTF, a `reference_otf`), `residual_slopes` (what
 a part differs by: `local`, from place to place; `equal_blur`, strong structures from weak ones),

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from typing import Final
 
 import numpy as np
 
@@ -51,6 +52,9 @@ PAIR_CHECKS = (
 )
 """The checks of a pair; "reference_directions" only where the reference was measured in one."""
 
+_MIN_WINDOWS: Final = 4
+"""Windows of one tile without gaps: of fewer the coherence is more chance than scene."""
+
 
 def check_pair(
     grid: PairGrid,
@@ -65,6 +69,7 @@ def check_pair(
     stop_change: float,
     clipped: float,
     fills: Sequence[Fill | None],
+    defects: tuple[int, int],
     images: Sequence[tuple[Image, Box]],
     info: ImageInfo,
     inverted: bool,
@@ -90,6 +95,8 @@ def check_pair(
         Share of clipped pixels, of the worse image.
     fills : sequence of Fill or None
         Undeclared fill of both images, tile by tile.
+    defects : (int, int)
+        Defective pixels of the low image, and samples of the high one, that were left out.
     images : sequence of (Image, Box)
         Both images, and which part of them is used.
     info : ImageInfo
@@ -103,7 +110,7 @@ def check_pair(
         _correlation(gaussian, inverted, limits),
         _coherence(spectra, limits),
         _high_noise(model, limits),
-        *_pixels(fit, limits),
+        *_pixels(fit, defects, limits),
         *_places(gaussian, local, limits),
         *_residuals(fit, model, limits),
         _equal_blur(difference, limits),
@@ -161,6 +168,12 @@ def _coherence(spectra: PairSpectra | None, limits: Limits) -> Check:
             "coherence", 0.0, "the region has too few whole windows for spectra", limits,
             advice="choose a larger region with less nodata",
         )  # fmt: skip
+    if spectra.windows < _MIN_WINDOWS:
+        return answer(
+            "coherence", 0.0,
+            f"only {spectra.windows} windows are whole, too few to judge the coherence by", limits,
+            advice="choose a larger region with fewer gaps",
+        )  # fmt: skip
     columns, rows = (
         float(np.interp(NYQUIST_CPP, *spectra.along_axis(axis))) for axis in ("across", "along")
     )
@@ -183,10 +196,17 @@ def _high_noise(model: KernelOtf, limits: Limits) -> Check:
     return answer("high_noise", share, found, limits)
 
 
-def _pixels(fit: KernelFit, limits: Limits) -> Iterator[Check]:
+def _pixels(fit: KernelFit, defects: tuple[int, int], limits: Limits) -> Iterator[Check]:
     yield answer("pixels", float(fit.used), f"{fit.used} low pixels were used", limits)
     share = fit.left_out / max(fit.left_out + fit.used, 1)
     found = f"{100 * share:.1f} % of the low pixels do not fit the rest and were left out"
+    if any(defects):
+        low, high = defects
+        found += (
+            f"; {low} pixels of the low image and {high} samples of the high one lie far beyond "
+            "all others, and the other image does not show them: defects, or a fill that is not "
+            "declared"
+        )
     yield answer("left_out", share, found, limits)
 
 

@@ -54,6 +54,7 @@ __all__ = ["Kernel", "KernelFit", "fit_kernel", "square_root", "without_noise"]
 
 
 _BANDS: Final = 4
+_MIN_PIXELS: Final = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -236,14 +237,14 @@ class _Residuals:
         """Normal equations of every region, tile means left out.
 
         Also, (k, regions), what their right sides change by if the ground beyond the image is
-        another.
+        another. A TargetError, if no tile keeps enough low pixels.
         """
         found: dict[int, Normal] = {}
         for tile in self.tiles():
             rest = self._residual(tile.low - self.kernel.low_pixels(tile, self.grid))
             left = self.whitening(rest)
             usable = np.isfinite(left)
-            if usable.sum() < 8:
+            if usable.sum() < _MIN_PIXELS:
                 continue
             y = self.whitening(np.where(np.isfinite(rest), tile.low, np.nan))[usable]
             fields = np.dstack([basis.columns(tile), self.kernel.light_from_beyond(tile)])
@@ -258,6 +259,12 @@ class _Residuals:
                 part = _centred(columns[own], y[own], weight[own])
                 before = found.get(region)
                 found[region] = part if before is None else _sum([before, part])
+        if not found:
+            raise TargetError(
+                f"no part of the region keeps {_MIN_PIXELS} low pixels that follow the high image: "
+                "one of the two is even but for a few outlying values; choose a region with more "
+                "structure, or state the value of pixels without data (nodata, --nodata)"
+            )
         beyond = [one.gram[:-1, -1] for one in found.values()]
         return [_without_last(one) for one in found.values()], np.stack(beyond, axis=1)
 

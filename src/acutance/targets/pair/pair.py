@@ -122,7 +122,7 @@ def measure_biresolution(
             tiles.grid, gaussian, pixel_fit, model, spectra, local,
             blur_difference(slopes, tiles.taps, gaussian, pixel_fit), chosen.limits,
             stop_change=chosen.stop_change, clipped=_clipped(tiles), fills=tiles.fills(),
-            images=tiles.parts, info=info, inverted=match.inverted,
+            defects=tiles.defects, images=tiles.parts, info=info, inverted=match.inverted,
         ),
         image=info,
         options={**chosen.to_dict(), "ratio": ratio, "reference_given": reference is not None},
@@ -234,7 +234,7 @@ def _pixel_fit(
             f"{error}; a noise of {options.noise_high:g} was stated of the high image, whose own "
             f"is estimated as {estimated:.3g}: state less (noise_high, --high-noise), or none"
         ) from error
-    return replace(found, left_out=found.left_out + ground.left_out)
+    return replace(found, left_out=found.left_out + ground.left_out + tiles.defects[0])
 
 
 def _spectra(

@@ -107,7 +107,9 @@ def registered_tiles(
     RegionError
         If too few low pixels have the high image around them.
     """
-    first = PairTiles(low, high, grid, region, tuned.SHORT_REACH_PX, options.max_pixels)
+    first = PairTiles(
+        low, high, grid, region, tuned.SHORT_REACH_PX, options.max_pixels, not options.robust
+    )
     found = _best_match(first, options.max_shift_px)
     if found.correlation <= 0:
         raise TargetError(
@@ -126,7 +128,7 @@ def registered_tiles(
     reach_px = options.reach_px
     if reach_px is None:
         reach_px = _reach_with_room(placed, first, region)
-    return PairTiles(low, high, placed, region, reach_px, options.max_pixels), found
+    return replace(first, grid=placed, reach_px=reach_px), found
 
 
 def _reach_with_room(grid: PairGrid, tiles: PairTiles, region: Region | None) -> float:

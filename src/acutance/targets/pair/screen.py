@@ -1,7 +1,8 @@
 """Parts of a pair that do not show the same ground: clouds, their shadows, changes.
 
 Robust weights cope with what is the smaller part of a scene. A cloud over half of it has to go
-before: block by block, where the low image does not follow the high one at all.
+before: block by block, where the low image does not follow the high one at all. Of a block that
+single defective pixels keep from following only these are taken out.
 """
 
 from __future__ import annotations
@@ -22,6 +23,8 @@ __all__ = ["ScreenedTiles", "screened"]
 
 _BLOCK_PX = 8
 _MIN_PIXELS = 16
+_MAX_SINGLE = 2
+"""Pixels of a block that may be defective one by one; where more are off, the block is."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,17 +51,31 @@ class ScreenedTiles:
             yield tile if mask is None else replace(tile, low=np.where(mask, np.nan, tile.low))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Block:
-    """Sums over a block: powers of the low pixels and of the model, their product."""
+    """The usable pixels of a block, low ones and model about their means, and their products."""
 
     tile: tuple[int, int]
     rows: slice
     cols: slice
+    usable: NDArray[np.bool_]
+    y: Floats
+    m: Floats
     low: float
     model: float
     product: float
-    count: int
+
+    @classmethod
+    def of(
+        cls, tile: tuple[int, int], rows: slice, cols: slice,
+        usable: NDArray[np.bool_], y: Floats, m: Floats,
+    ) -> _Block:  # fmt: skip
+        y, m = y - y.mean(), m - m.mean()
+        return cls(tile, rows, cols, usable, y, m, float(y @ y), float(m @ m), float(y @ m))
+
+    @property
+    def count(self) -> int:
+        return self.y.size
 
     @property
     def follows(self) -> bool:
@@ -67,6 +84,29 @@ class _Block:
     def residual(self, gain: float) -> float:
         """Power that the model with this gain leaves."""
         return max(self.low - 2 * gain * self.product + gain**2 * self.model, 0.0)
+
+    def is_off(self, gain: float, noise: float) -> bool:
+        """Whether it does not show the same, noise being the power of a pixel."""
+        rest = self.residual(gain)
+        return (
+            rest > tuned.BLOCK_NOISES**2 * noise * self.count
+            and rest > tuned.BLOCK_OFF**2 * gain**2 * self.model
+        )
+
+    def taken_out(self, gain: float, noise: float) -> NDArray[np.bool_]:
+        """The pixels of a block that is off: single ones, if it shows the same without them."""
+        rest = self.y - gain * self.m
+        order = np.argsort(np.abs(rest - np.median(rest)))
+        for single in range(1, _MAX_SINGLE + 1):
+            kept = order[:-single]
+            block = _Block.of(
+                self.tile, self.rows, self.cols, self.usable, self.y[kept], self.m[kept]
+            )
+            if not block.is_off(gain, noise):
+                found = np.zeros(self.usable.shape, bool)
+                found[tuple(place[order[-single:]] for place in np.nonzero(self.usable))] = True
+                return found
+        return np.ones(self.usable.shape, bool)
 
 
 def screened(
@@ -99,17 +139,13 @@ def screened(
     structured = [
         one for one in blocks if gain**2 * one.model > tuned.BLOCK_NOISES**2 * noise * one.count
     ]
-    off = [
-        one
-        for one in blocks
-        if one.residual(gain) > tuned.BLOCK_NOISES**2 * noise * one.count
-        and one.residual(gain) > tuned.BLOCK_OFF**2 * gain**2 * one.model
-    ]
+    off = [one for one in blocks if one.is_off(gain, noise)]
     if sum(one.follows for one in structured) < tuned.FEW_BLOCKS_FOLLOW * len(structured):
         return ScreenedTiles(tiles, {}, 0)
     masks: dict[tuple[int, int], NDArray[np.bool_]] = {}
     for one in off:
-        masks.setdefault(one.tile, np.zeros(shapes[one.tile], bool))[one.rows, one.cols] = True
+        whole = masks.setdefault(one.tile, np.zeros(shapes[one.tile], bool))
+        whole[one.rows, one.cols] = one.taken_out(gain, noise)
     lost = sum(
         int((core(mask) & np.isfinite(core(tile.low))).sum())
         for tile in tiles()
@@ -126,7 +162,4 @@ def _blocks(place: tuple[int, int], low: Floats, model: Floats) -> Iterator[_Blo
             usable = np.isfinite(y)
             if usable.sum() < _MIN_PIXELS:
                 continue
-            y, m = y[usable] - y[usable].mean(), m[usable] - m[usable].mean()
-            yield _Block(
-                place, rows, cols, float(y @ y), float(m @ m), float(y @ m), int(usable.sum())
-            )
+            yield _Block.of(place, rows, cols, usable, y[usable], m[usable])

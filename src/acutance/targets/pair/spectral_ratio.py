@@ -182,8 +182,10 @@ def _windows(
     """Places in the low image, low pixels there, and the samples under them, both flattened."""
     values = np.where(np.isfinite(residual), tile.low, np.nan)
     axes = (grid.down, grid.across)
-    for i in _starts(values.shape[0], size):
-        for j in _starts(values.shape[1], size):
+    # On the right lie pads, which are holes at the border of the image.
+    height, width = values.shape[0], values.shape[1] - PAD_PX
+    for i in _starts(height, size):
+        for j in _starts(width, size):
             pixels = values[i - 1 : i + size + 1, j - 1 : j + size + 1]
             holes = ~np.isfinite(pixels)
             if holes.mean() > _MISSING:

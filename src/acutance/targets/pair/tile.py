@@ -120,6 +120,9 @@ class PairTile:
         Row and column of the first pixel in the low image.
     regions : (h, w) int array
         Which region of the map of local statistics every low pixel belongs to.
+    defects : (int, int)
+        Pixels of the low image and samples of the high one that were left out, since they lie far
+        beyond all others and the other image does not show them.
     """
 
     low: Floats
@@ -128,6 +131,7 @@ class PairTile:
     beyond: Floats | None
     place: tuple[int, int]
     regions: NDArray[np.intp]
+    defects: tuple[int, int] = (0, 0)
 
 
 @dataclass(frozen=True, eq=False)

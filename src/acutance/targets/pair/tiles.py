@@ -15,9 +15,23 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.errors import RegionError
 from acutance.raster import Box, Fill, Image, Region
+from acutance.targets.pair.defects import (
+    beyond_any_scene,
+    find_defects,
+    means_of_cells,
+    repaired,
+)
 from acutance.targets.pair.grid import PairGrid
 from acutance.targets.pair.noise import NO_NOISE, HighNoise
-from acutance.targets.pair.tile import FAR_PX, PAD_PX, PairTile, TapAxis, TapGrid, first_of_cell
+from acutance.targets.pair.tile import (
+    FAR_PX,
+    PAD_PX,
+    PairTile,
+    TapAxis,
+    TapGrid,
+    core,
+    first_of_cell,
+)
 from acutance.targets.region import read_data
 
 __all__ = ["PairTiles"]
@@ -27,6 +41,8 @@ _REGION_PX: Final = 24
 _MAX_REGIONS: Final = 8
 _HOLE_PX: Final = 3.0
 """Distance within which a missing sample of the reference spoils a low pixel."""
+_SPOILED: Final = 0.02
+"""Weight of missing values in an interpolated sample from which it is missing."""
 _KEPT_VALUES: Final = 40_000_000
 _MIN_SIDE_PX: Final = 16
 
@@ -45,6 +61,8 @@ class PairTiles:
         How far the taps of a low pixel go, in low pixels.
     max_pixels : int
         Low pixels read at most: of a larger scene, tiles distributed evenly over it.
+    keep_defects : bool
+        Whether values far beyond all others, which one image alone has, are kept.
     """
 
     low: Image
@@ -53,6 +71,7 @@ class PairTiles:
     region: Region | None
     reach_px: float
     max_pixels: int
+    keep_defects: bool = False
 
     @cached_property
     def taps(self) -> TapGrid:
@@ -177,6 +196,12 @@ class PairTiles:
         """Both images, and the part of them that shows the low image's box."""
         return (self.low, self.box), (self.high, self._high_box(self.box))
 
+    @cached_property
+    def defects(self) -> tuple[int, int]:
+        """Defective pixels of the low image that were left out, and of the high one."""
+        counts = [tile.defects for tile in self()]
+        return sum(one for one, _ in counts), sum(one for _, one in counts)
+
     def fills(self) -> list[Fill | None]:
         """Undeclared fill of the low image's tiles, and of the high image's next to them."""
         fills = []
@@ -199,7 +224,10 @@ class PairTiles:
         taps = self.taps
         rows = _window(taps.down, padded.row, padded.height, far=True)
         cols = _window(taps.across, padded.col, padded.width, far=True)
-        samples, missing = self._samples(rows, cols)
+        samples, missing, absurd = self._samples(rows, cols)
+        defects = (0, 0)
+        if not self.keep_defects:
+            low, samples, defects = self._without_defects(low, samples, absurd)
         top, left = (
             FAR_PX * axis.per_px + first_of_cell(axis) * -1 - axis.half
             for axis in (taps.down, taps.across)
@@ -208,16 +236,37 @@ class PairTiles:
         near = slice(top, top + height), slice(left, left + width)
         fine = np.ascontiguousarray(samples[near])
         low[_spoiled(missing[near], taps, padded.shape)] = np.nan
-        wide, beyond = self._means(samples), None
+        wide, beyond = means_of_cells(samples, self._per_px), None
         if self.grid.down.leaves_image(*rows) or self.grid.across.leaves_image(*cols):
-            beyond = self._means(self._samples(rows, cols, mirrored=True)[0]) - wide
-        return PairTile(low, fine, wide, beyond, (padded.row, padded.col), self._labels(padded))
+            mirrored, _, absurd = self._samples(rows, cols, mirrored=True)
+            if not self.keep_defects:
+                _, mirrored, _ = self._without_defects(low, mirrored, absurd)
+            beyond = means_of_cells(mirrored, self._per_px) - wide
+        return PairTile(
+            low, fine, wide, beyond, (padded.row, padded.col), self._labels(padded), defects
+        )
 
-    def _means(self, samples: Floats) -> Floats:
-        """Means of samples over low pixels."""
-        per_px = self.taps.down.per_px, self.taps.across.per_px
-        rows, cols = (size // per for size, per in zip(samples.shape, per_px, strict=True))
-        return np.asarray(samples.reshape(rows, per_px[0], cols, per_px[1]).mean(axis=(1, 3)))
+    @property
+    def _per_px(self) -> tuple[int, int]:
+        """Samples of a low pixel, down and across."""
+        return self.taps.down.per_px, self.taps.across.per_px
+
+    def _without_defects(
+        self, low: Floats, samples: Floats, absurd: NDArray[np.bool_]
+    ) -> tuple[Floats, Floats, tuple[int, int]]:
+        """Both images of a tile without their defective pixels, and how many those are."""
+        found = find_defects(low, samples, self._per_px)
+        of_high = found.high | absurd
+        rows, cols = (slice(FAR_PX * per, -FAR_PX * per) for per in self._per_px)
+        if found.low.any():
+            low = np.where(found.low, np.nan, low)
+        if of_high.any():
+            samples = repaired(samples, of_high, max(self._per_px))
+        return (
+            low,
+            samples,
+            (int(np.count_nonzero(core(found.low))), int(np.count_nonzero(of_high[rows, cols]))),
+        )
 
     def _read_low(self, box: Box) -> Floats:
         """Low pixels, NaN beyond the image, the region and the reference's cover."""
@@ -238,26 +287,23 @@ class PairTiles:
 
     def _samples(
         self, rows: tuple[int, int], cols: tuple[int, int], *, mirrored: bool = False
-    ) -> tuple[Floats, NDArray[np.bool_]]:
-        """Reference samples of a window, holes filled with its mean, and where the holes are."""
+    ) -> tuple[Floats, NDArray[np.bool_], NDArray[np.bool_]]:
+        """Reference samples of a window, holes filled with its mean, where holes are, and absurd
+        values."""
         (row, height), (col, width) = self.grid.down.window(*rows), self.grid.across.window(*cols)
         values, _ = read_data(self.high, Box(row, col, height, width))
         missing = ~np.isfinite(values)
-        if missing.any():
-            known = values[~missing]
-            values = np.where(missing, known.mean() if known.size else 0.0, values)
+        absurd = np.zeros(values.shape, bool) if self.keep_defects else beyond_any_scene(values)
+        known = ~(missing | absurd)
+        if not known.all():
+            values = np.where(known, values, values[known].mean() if known.any() else 0.0)
         down = self.grid.down.weights(*rows, mirrored=mirrored)
         across = self.grid.across.weights(*cols, mirrored=mirrored)
-        holes = missing.astype(float)
-        if down.ndim == 1:
-            values, holes = values[down.astype(np.intp)], holes[down.astype(np.intp)]
-        else:
-            values, holes = down @ values, np.abs(down) @ holes
-        if across.ndim == 1:
-            values, holes = values[:, across.astype(np.intp)], holes[:, across.astype(np.intp)]
-        else:
-            values, holes = values @ across.T, holes @ np.abs(across).T
-        return np.asarray(values, float), holes > 0.02
+        masks = [
+            _resampled(mask.astype(float), np.abs(down), np.abs(across)) > _SPOILED
+            for mask in (missing, absurd)
+        ]
+        return _resampled(values, down, across), masks[0], masks[1]
 
     def _labels(self, box: Box) -> NDArray[np.intp]:
         """The region of the map that every low pixel of a box belongs to."""
@@ -270,6 +316,16 @@ class PairTiles:
         i = np.searchsorted(starts, rows, side="right") - 1
         j = np.searchsorted(sides, cols, side="right") - 1
         return np.asarray(i[:, None] * across + j[None, :], np.intp)
+
+
+def _resampled(
+    values: Floats, down: Floats | NDArray[np.intp], across: Floats | NDArray[np.intp]
+) -> Floats:
+    """Samples taken by their numbers, or by the weights of all."""
+    values = values[down.astype(np.intp)] if down.ndim == 1 else down @ values
+    if across.ndim == 1:
+        return np.asarray(values[:, across.astype(np.intp)], float)
+    return np.asarray(values @ across.T, float)
 
 
 def _share(part: int, size: int, parts: int) -> int:

@@ -2,7 +2,9 @@
 
 A slope of a plateau next to an edge looks like a halo of the sensor and lowers the MTF. Trends
 along the edge separate the two: no sensor makes them. Every side of the edge has low polynomials
-in both directions, whose common amplitude the data determine.
+in both directions, whose common amplitude the data determine. The ground around a pulse may besides
+be tilted as a whole, as far as it likes: no halo is, and a tilt in the common amplitude would let
+both sides slope away from the pulse as steeply, which is what a halo looks like.
 """
 
 from __future__ import annotations
@@ -13,7 +15,7 @@ from acutance.curves.grid import Floats
 from acutance.numerics.compiled import compiled
 from acutance.targets.straight.step_profile import Sides
 
-__all__ = ["plateau_trends"]
+__all__ = ["ground_tilts", "plateau_trends"]
 
 
 def plateau_trends(sides: Sides, t: Floats) -> Floats:
@@ -30,6 +32,21 @@ def plateau_trends(sides: Sides, t: Floats) -> Floats:
     for own, (share, outwards) in zip(modes.reshape(-1, 5, t.size), sides, strict=True):
         _fill(own, share, outwards, t)
     return modes
+
+
+def ground_tilts(sides: Sides, t: Floats) -> Floats:
+    """The ground beside a pulse tilted as a whole, along and across, (2, n): about 1 at the ends.
+
+    Parameters
+    ----------
+    sides, t
+        As for `plateau_trends`.
+    """
+    (before, to_left), (behind, to_right) = sides
+    reach = max(float(np.max(to_left)), float(np.max(to_right)), 1e-9)
+    half_length = max(float(np.max(np.abs(t))), 1e-9)
+    across = behind * np.maximum(to_right, 0.0) - before * np.maximum(to_left, 0.0)
+    return np.stack([(before + behind) * t / half_length, across / reach])
 
 
 @compiled

@@ -9,6 +9,7 @@ those of line, width and height ratio: they are derivatives of the response, and
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -23,7 +24,7 @@ from acutance.numerics.noise import side_variances
 from acutance.targets.straight import lsf_prior
 from acutance.targets.straight.error_causes import FitCauses
 from acutance.targets.straight.first_fit import FirstFit
-from acutance.targets.straight.gradients import plateau_trends
+from acutance.targets.straight.gradients import ground_tilts, plateau_trends
 from acutance.targets.straight.ground_steps import Ground, GroundSide
 from acutance.targets.straight.lsf import LsfModel
 from acutance.targets.straight.model_prior import GROUND_BLOCK, model_prior
@@ -52,11 +53,14 @@ class NoiseModel:
         Their mean, in image units squared.
     relative : (n,) array
         Variance of every pixel, relative to `scale`.
+    log_ratio : float
+        Logarithm of the variance of the bright plateau over that of the dark one.
     """
 
     sides: Floats
     scale: float
     relative: Floats
+    log_ratio: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,11 +148,15 @@ class Linear:
         fixed = [further, trends, ground.columns]
         if rounding.std.size:
             fixed.append(rounding.modes)
+        free_std = [rounding.std]
+        if not is_edge:
+            fixed.append(ground_tilts(sides, t))
+            free_std.append(np.full(len(fixed[-1]), height))
         # Rotation (radians), width (pixels) and height ratio are known to about one.
         by_parameter = [1.0, CURVATURE_STD_PER_PX, *[1.0] * (derivatives - 2)]
         prior = model_prior(
             first_fit.blur, height, directions, ground, len(trends),
-            np.concatenate([rounding.std, by_parameter]), rounding.floor,
+            np.concatenate([*free_std, by_parameter]), rounding.floor,
         )  # fmt: skip
         return cls(
             first_fit, s, t, seen, mean, slope, residual,
@@ -168,20 +176,21 @@ class Linear:
         steep: Floats = self.slope / max(float(np.max(np.abs(self.slope))), 1e-12)
         return steep * steep
 
-    def noise(self, outlier: Floats, roughness: float) -> NoiseModel:
-        """The noise of the residuals of the first fit, outliers weighted by `outlier`.
+    def noise(self, residual: Floats, outlier: Floats, roughness: float) -> NoiseModel:
+        """The noise of residuals, outliers weighted by `outlier`.
 
         A rough edge moves by fractions of a pixel from row to row: `roughness` is the noise
         variance this adds where the image is steepest, relative to the rest.
         """
-        sides = np.array(side_variances(self.first_residual * np.sqrt(outlier), self.mean))
+        sides = np.array(side_variances(residual * np.sqrt(outlier), self.mean))
         sides = np.maximum(sides, self.rounding.floor**2)
         floor = (NOISE_FLOOR * self.first_fit.height) ** 2
         scale = float(0.5 * (sides[0] + sides[1])) + floor
-        relative = _between_levels(self.mean, *((sides + floor) / scale).tolist())
+        dark, bright = ((sides + floor) / scale).tolist()
+        relative = _between_levels(self.mean, dark, bright)
         if roughness > 0:
             relative *= 1 + roughness * self.steepness
-        return NoiseModel(sides / scale, scale, relative)
+        return NoiseModel(sides / scale, scale, relative, math.log(bright / dark))
 
     def columns(self, model: LsfModel | None) -> list[Floats]:
         """All regressors other than the spline, those that depend on the LSF in the last array.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -22,7 +23,7 @@ from acutance.targets.straight.edge import described, details_of, in_whole_image
 from acutance.targets.straight.find_edges import find_segments
 from acutance.targets.straight.find_pulse import find_pulse
 from acutance.targets.straight.fit_pulse import PulsePixels, fit_pulse, fit_pulse_steps
-from acutance.targets.straight.lsf import of_stated_target, with_uncertain_halo
+from acutance.targets.straight.lsf import SplineResponse, of_stated_target, with_uncertain_halo
 from acutance.targets.straight.options import PulseOptions
 from acutance.targets.straight.pixels import EdgeFit
 from acutance.targets.straight.published import PUBLISHED_PULSE, PUBLISHED_PULSE_OPTIONS
@@ -32,11 +33,12 @@ from acutance.targets.straight.pulse_checks import (
     pulse_snr,
     width_check,
 )
+from acutance.targets.straight.pulse_halo import light_of_halo
 from acutance.targets.straight.pulse_response import prf_fwhm
 from acutance.targets.straight.stated_target import stated_target
 from acutance.targets.straight.straight_measurement import StraightMeasurement
 from acutance.targets.straight.trim import Extent
-from acutance.targets.straight.tuned import MAX_CORRECTED_WIDTH
+from acutance.targets.straight.tuned import HALO_WIDTH_PX2, MAX_CORRECTED_WIDTH
 
 __all__ = ["PULSE_METHODS", "measure_pulse", "pulse_steps", "require_pulse_method"]
 
@@ -52,7 +54,16 @@ def _spline(trimmed: PulsePixels, fit_width: bool, options: PulseOptions) -> Ste
     fit = yield from fit_pulse_steps(trimmed, fit_width=fit_width, robust=options.robust)
     response = with_uncertain_halo(fit.response)
     prf = prf_fwhm(response, fit.pulse_width.value, fit.width_factor)
-    return replace(fit, response=response), fit.pulse_width, fit.height_ratio, prf
+    width = _with_halo(fit.pulse_width, response)
+    return replace(fit, response=response), width, fit.height_ratio, prf
+
+
+def _with_halo(width: Estimate, response: SplineResponse) -> Estimate:
+    """A fitted width, which follows the light that the halo takes from the pulse or gives it."""
+    if width.std == 0 or not width.value > 0:
+        return width
+    std = HALO_WIDTH_PX2 * response.halo_share * light_of_halo(response) / width.value
+    return replace(width, std=math.hypot(width.std, std))
 
 
 def _published(name: str) -> Callable[[PulsePixels, bool, PulseOptions], Steps[_Fitted]]:

@@ -14,7 +14,7 @@ from acutance.curves import Esf, Lsf, Mtf, Response
 from acutance.curves.grid import Floats
 from acutance.targets.straight.error_causes import with_cause
 
-__all__ = ["halo", "with_halo_error"]
+__all__ = ["halo", "light_of_halo", "with_halo_error"]
 
 _FROM_WIDTHS, _TO_WIDTHS = 1.0, 2.0
 
@@ -29,6 +29,14 @@ def halo(lsf: Lsf, fwhm_px: float) -> Floats:
     outwards = np.abs(lsf.distance_px) / fwhm_px
     within = np.clip((outwards - _FROM_WIDTHS) / (_TO_WIDTHS - _FROM_WIDTHS), 0.0, 1.0)
     return np.asarray(np.maximum(lsf.value, 0.0) * (0.5 - 0.5 * np.cos(np.pi * within)))
+
+
+def light_of_halo(response: Response) -> float:
+    """Share of an LSF's light that lies in its halo; 0 where it has no width."""
+    width, lsf = response.fwhm_px.value, response.lsf
+    if not np.isfinite(width):
+        return 0.0
+    return float(halo(lsf, width).sum() / lsf.value.sum())
 
 
 def with_halo_error(response: Response, share: float) -> tuple[Esf, Lsf, Mtf]:

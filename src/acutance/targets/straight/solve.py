@@ -41,6 +41,8 @@ _SETTLED_BEND_PX = 0.03
 """At the ends of the target, the only places where it is that much."""
 _SETTLED_RATIO = 0.003
 """Updates below these: the error of linearity is less than 1e-4 of the edge's height."""
+_SETTLED_NOISE = 0.2
+"""Of the logarithm of the ratio of the sides' variances."""
 _NEGLIGIBLE_SIGMAS = 3.0
 _MAX_PASSES = 10
 _STEEP: Final = 0.25
@@ -129,6 +131,8 @@ class Solution:
         The same in standard deviations of the pixel's noise.
     side_noise : (float, float)
         Standard deviation of the noise on the dark and on the bright plateau.
+    noise_log_ratio : float
+        Logarithm of the ratio of their variances that the weights assume.
     roughness : float
         Noise variance that the edge roughness adds where the image is steepest, relative to the
         rest.
@@ -143,6 +147,7 @@ class Solution:
     residual: Floats
     standard: Floats
     side_noise: tuple[float, float]
+    noise_log_ratio: float
     roughness: float
 
     @property
@@ -213,7 +218,8 @@ def solve(
     for _ in range(_MAX_PASSES):
         solved = _pass(linear, outlier, whiteness.inflation, roughness, earlier)
         standard = solved.standard
-        heavy = robust and float(np.abs(standard).max()) > _OUTLYING
+        has_noise = _has_settled_noise(solved, outlier)
+        heavy = robust and has_noise and float(np.abs(standard).max()) > _OUTLYING
         again = _reweighted(standard, linear) if heavy else outlier
         found = correlation(_bounded(standard), *pixels.at, [linear.first_fit.line.normal])
         short = _are_short(solved, fit_width)
@@ -227,6 +233,7 @@ def solve(
             and np.max(np.abs(again - outlier)) < 0.05
             and abs(found.inflation / whiteness.inflation - 1) < 0.05
             and abs(solved.roughness - roughness) < 0.1 * (1 + roughness)
+            and has_noise
         )
         if settled:
             break
@@ -249,6 +256,16 @@ def _seen_again(solved: Solution, seen: AmongSensors) -> Solution:
     linear, posterior = seen.linear, seen.posterior
     residual = linear.first_residual - linear.image(solved.columns, posterior.beta)
     return replace(solved, linear=linear, posterior=posterior, residual=residual)
+
+
+def _has_settled_noise(solved: Solution, outlier: Floats) -> bool:
+    """Whether the two sides differ in noise as was assumed.
+
+    What the first fit leaves of sloping ground is no noise: weights taken from it alone would trust
+    the pixels of a pulse up to a hundred times too much, and then take them for outliers.
+    """
+    found = solved.linear.noise(solved.residual, outlier, solved.roughness)
+    return abs(found.log_ratio - solved.noise_log_ratio) < _SETTLED_NOISE
 
 
 def _are_short(solved: Solution, fit_width: bool) -> bool:
@@ -307,7 +324,8 @@ def _pass(
     linear: Linear, outlier: Floats, inflation: float, roughness: float, earlier: Solution | None
 ) -> Solution:
     """Solve for the correction of the LSF, the levels, the line and the profile."""
-    noise = linear.noise(outlier, roughness)
+    left = linear.first_residual if earlier is None else earlier.residual
+    noise = linear.noise(left, outlier, roughness)
     weight = outlier / noise.relative
     columns = linear.columns(None if earlier is None else earlier.mean_model)
     normal = _equations(linear, weight, columns, float(np.add.reduce(outlier)), earlier)
@@ -321,7 +339,7 @@ def _pass(
     dark, bright = np.sqrt(posterior.variance * noise.sides).tolist()
     return Solution(
         linear, weight, columns, normal, equations, posterior, residual, standard, (dark, bright),
-        _edge_roughness(standard, linear.steepness, roughness),
+        noise.log_ratio, _edge_roughness(standard, linear.steepness, roughness),
     )  # fmt: skip
 
 

@@ -147,16 +147,25 @@ class StraightMeasurement(Measurement):
         halos = {"halo": halo[:, 0] ** 2} if halo.size else {}
         return causes.variances(fitted) | halos
 
+    @property
+    def width_m(self) -> Estimate | None:
+        """Width of a pulse along the normal in metres, where the GSD is known."""
+        return self._in_metres(self.width_px)
+
+    @property
+    def prf_fwhm_m(self) -> Estimate | None:
+        """Width of the pulse response function in metres, where the GSD is known."""
+        return self._in_metres(self.prf_fwhm_px)
+
+    def _in_metres(self, number: Estimate | None) -> Estimate | None:
+        gsd_m = self.response.gsd_m
+        return None if number is None or gsd_m is None else number * gsd_m
+
     def pulse_numbers(self) -> dict[str, Estimate]:
         """Widths of a pulse and of its response by name, with a GSD also in metres."""
-        gsd_m = self.response.gsd_m
-        found: dict[str, Estimate] = {}
-        for name, number in (("width", self.width_px), ("prf_fwhm", self.prf_fwhm_px)):
-            if number is not None:
-                found[f"{name}_px"] = number
-                if gsd_m is not None:
-                    found[f"{name}_m"] = number * gsd_m
-        return found
+        names = ("width_px", "width_m", "prf_fwhm_px", "prf_fwhm_m")
+        numbers = {name: getattr(self, name) for name in names}
+        return {name: number for name, number in numbers.items() if number is not None}
 
     def target_document(self) -> dict[str, Any]:
         """Line, levels and, of a pulse, its widths, for JSON."""
