@@ -220,7 +220,7 @@ def test_pixels_that_are_not_square():
 
 def test_the_documented_file_is_the_documented_sensor():
     page = (Path(__file__).parents[2] / "docs" / "simulate.rst").read_text()
-    _, _, after = page.partition(".. code-block:: toml\n\n")
+    _, _, after = page.partition(":caption: my-sensor.toml\n\n")
     indented = takewhile(lambda line: not line or line.startswith("   "), after.splitlines())
     found = sensor_file_from_toml("\n".join(line[3:] for line in indented))
     stated = [optics.Gaussian(0.39), optics.Detector(), optics.Smear(0.25, "along")]
