@@ -38,8 +38,9 @@ They are read from the documents."""
 _NONE: Final = "–"
 AVERAGE: Final = "average"
 _MEANS: Final = (
-    "± of a mean holds the scatter between images (of one image: between its targets) and is "
-    "widened for how few they are: 1.96 of it hold 95 % (Student's t)."
+    "± of a mean holds the scatter between images (of one image: between its targets), and between "
+    "targets and sites that come again; it is widened for how few they are: 1.96 of it hold "
+    "95 % (Student's t)."
 )
 _SINGLE: Final = "* one measurement: ± is its own deviation, without that scatter."
 

@@ -110,6 +110,11 @@ class Linear:
     prior: Prior
     rounding: Rounding
 
+    @property
+    def is_edge(self) -> bool:
+        """Whether the target has one step; a pulse has two or more."""
+        return len(self.first_fit.profile.shares) == 1
+
     @classmethod
     def about(
         cls,

@@ -218,7 +218,7 @@ def solve(
     for _ in range(_MAX_PASSES):
         solved = _pass(linear, outlier, whiteness.inflation, roughness, earlier)
         standard = solved.standard
-        has_noise = _has_settled_noise(solved, outlier)
+        has_noise = linear.is_edge or _has_settled_noise(solved, outlier)
         heavy = robust and has_noise and float(np.abs(standard).max()) > _OUTLYING
         again = _reweighted(standard, linear) if heavy else outlier
         found = correlation(_bounded(standard), *pixels.at, [linear.first_fit.line.normal])
@@ -324,7 +324,11 @@ def _pass(
     linear: Linear, outlier: Floats, inflation: float, roughness: float, earlier: Solution | None
 ) -> Solution:
     """Solve for the correction of the LSF, the levels, the line and the profile."""
-    left = linear.first_residual if earlier is None else earlier.residual
+    # Beside an edge the first fit leaves structure of the ground rather than its slope, and weights
+    # that know of it are the truer ones.
+    left = linear.first_residual
+    if earlier is not None and not linear.is_edge:
+        left = earlier.residual
     noise = linear.noise(left, outlier, roughness)
     weight = outlier / noise.relative
     columns = linear.columns(None if earlier is None else earlier.mean_model)
