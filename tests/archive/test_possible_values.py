@@ -12,7 +12,7 @@ from acutance.archive.tables import images
 from acutance.archive.trends.series import date_of, decimal_year
 from acutance.errors import OptionError
 
-LATER = (datetime.now(UTC) + timedelta(days=3)).date().isoformat()
+LATER = f"{datetime.now(UTC).year + 11}-01-01"
 IMPOSSIBLE = [
     {"acquired": "1956-12-31"},
     {"acquired": "0001-01-01"},
@@ -150,3 +150,15 @@ def test_kept_dates_that_cannot_be_end_nothing_and_are_named(archive, entry_of):
 @pytest.mark.parametrize("when", ["9999-12-31", "9999-12-31T23:59:59.999999Z", "0001-01-01"])
 def test_first_and_last_days_are_years(when):
     assert date_of(decimal_year(when)).isoformat() == when[:10]
+
+
+def test_images_of_days_to_come_are_named_by_the_trend(archive, entry_of):
+    begin = datetime.now(UTC)
+    entries = [
+        entry_of(2 * i, image=ImageEntry(content=f"{i:064x}", sensor="S1", acquired=day))
+        for i, day in enumerate(begin + timedelta(days=40 * at) for at in range(-4, 3))
+    ]
+    archive.add_entries(entries)
+    trend = archive.trend("mtf_nyquist", sensor="S1")
+    assert trend.images.images == 7
+    assert "2 images have dates to come: a simulation, or wrong." in trend.notes

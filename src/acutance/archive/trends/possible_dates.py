@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from datetime import UTC, datetime, timedelta
 from typing import Any, Final
 
 import numpy as np
@@ -30,7 +31,7 @@ def possible_dates(acquired: NDArray[np.datetime64]) -> NDArray[np.datetime64]:
 
 
 def impossible_date_notes(rows: Columns, mask: NDArray[np.bool_]) -> Iterator[str]:
-    """The images of some rows whose dates are none, in a sentence.
+    """The images of some rows whose dates are none, or to come, in sentences.
 
     Parameters
     ----------
@@ -51,6 +52,12 @@ def impossible_date_notes(rows: Columns, mask: NDArray[np.bool_]) -> Iterator[st
             f"The dates of {counted(len(several), 'image')} are not from {first} to {last}, and "
             f"taken as not known: {listed}. Correct them."
         )
+    ahead = np.datetime64(datetime.now(UTC).date() + timedelta(days=2))
+    later = {rows["image_id"][one] for one in np.flatnonzero(mask & (rows["acquired"] >= ahead))}
+    later -= names.keys()
+    if later:
+        have = "has a date" if len(later) == 1 else "have dates"
+        yield f"{counted(len(later), 'image')} {have} to come: a simulation, or wrong."
 
 
 def _impossible(acquired: NDArray[np.datetime64]) -> NDArray[np.bool_]:

@@ -17,6 +17,7 @@ _MIDNIGHT = re.compile(r"(?<=[T ])24(?=:00(?::00(?:\.0+)?)?(?:Z|[+-]|$))")
 """The end of a day."""
 _YEARS = (1957, 2200)
 """Since there are satellites."""
+_YEARS_AHEAD = 10
 
 
 def utc_time(text: object) -> datetime | None:
@@ -101,11 +102,11 @@ def is_day(when: datetime | date) -> bool:
 
 
 def possible_days() -> tuple[date, date]:
-    """First and last day an image can be of: since there are satellites, until tomorrow.
+    """First and last day an image can be of: since there are satellites, for ten years to come.
 
-    The last is that of UTC: a day without a time may be of a place where it is tomorrow already.
+    Images that are simulated may be of days ahead.
     """
-    return date(_YEARS[0], 1, 1), datetime.now(UTC).date() + timedelta(days=1)
+    return date(_YEARS[0], 1, 1), date(datetime.now(UTC).year + _YEARS_AHEAD, 12, 31)
 
 
 def is_possible(when: datetime | date) -> bool:
