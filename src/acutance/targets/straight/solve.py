@@ -259,11 +259,7 @@ def _seen_again(solved: Solution, seen: AmongSensors) -> Solution:
 
 
 def _has_settled_noise(solved: Solution, outlier: Floats) -> bool:
-    """Whether the two sides differ in noise as was assumed.
-
-    What the first fit leaves of sloping ground is no noise: weights taken from it alone would trust
-    the pixels of a pulse up to a hundred times too much, and then take them for outliers.
-    """
+    """Whether the sides differ in noise as assumed: what first fits leave of slopes is none."""
     found = solved.linear.noise(solved.residual, outlier, solved.roughness)
     return abs(found.log_ratio - solved.noise_log_ratio) < _SETTLED_NOISE
 
@@ -324,8 +320,7 @@ def _pass(
     linear: Linear, outlier: Floats, inflation: float, roughness: float, earlier: Solution | None
 ) -> Solution:
     """Solve for the correction of the LSF, the levels, the line and the profile."""
-    # Beside an edge the first fit leaves structure of the ground rather than its slope, and weights
-    # that know of it are the truer ones.
+    # What the first fit leaves beside an edge is structure of the ground: weights have to know it.
     left = linear.first_residual
     if earlier is not None and not linear.is_edge:
         left = earlier.residual
