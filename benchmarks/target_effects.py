@@ -23,6 +23,8 @@ from acutance.archive.trends import Event, Series, Trend, fit_trend
 LEVEL: Final = 0.16
 START: Final = 2021.0
 IMAGES, YEARS = 40, 3.0
+MEAN_DRAWS = 1000
+"""A trend takes a second, a mean some milliseconds."""
 
 
 @dataclass(frozen=True)
@@ -91,6 +93,13 @@ def answers(job: Job) -> tuple[float, ...]:
     )  # fmt: skip
 
 
+def mean_answers(job: Job) -> tuple[float, float]:
+    """Whether the interval of a mean over images holds, and its deviation."""
+    case, _, seed = job
+    mean = mean_of_images(simulate(case, np.random.default_rng(seed))).mean
+    return float(_holds(mean.interval(), LEVEL)), mean.std / LEVEL
+
+
 def event_answers(job: tuple[int, int, float, float, tuple[int, ...]]) -> tuple[float, ...]:
     """Whether the intervals of a stated step and of the drift beside it hold."""
     before, after, step, drift, seed = job
@@ -140,6 +149,11 @@ def main() -> None:
             wrong = mean[8] / max(mean[7], 1e-9)
             rows.append([label, *map(percent, mean[:3]), *(f"{100 * one:.2f}" for one in mean[3:5]),
                          *map(percent, mean[5:8]), percent(wrong)])  # fmt: skip
+    means = []
+    for name, case in CASES.items():
+        jobs = [(case, True, (seed, 1, draw)) for draw in range(MEAN_DRAWS)]
+        held, std = np.mean(work_through(mean_answers, jobs, arguments.processes, name), axis=0)
+        means.append([name, percent(held), f"{100 * std:.2f}"])
     events = []
     for name, (before, after, step, drift) in EVENTS.items():
         jobs = [(before, after, step, drift, (seed, draw)) for draw in draws]
@@ -155,6 +169,9 @@ def main() -> None:
              "mean's std / %", "false steps / %", "said not to be steady / %",
              "requirement answered / %", "of these wrongly / %"], rows,
         ),
+        "## Means alone",
+        f"{MEAN_DRAWS} archives each.",
+        table(["targets", "mean held / %", "mean's std / %"], means),
         "## Stated steps",
         "Scatter 4 %, stated deviations 1 %, three years, the event in their middle.",
         table(["event", "step held / %", "rate held / %", "step's std / %"], events),

@@ -5,6 +5,8 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from acutance import optics, simulate
+from acutance.archive import Archive
+from acutance.archive.published import published_entries
 from acutance.raster import write_geotiff
 from acutance.report import measurement_schema
 
@@ -19,6 +21,15 @@ def edge_image(tmp_path_factory):
     )
     path = tmp_path_factory.mktemp("images") / "edge.tif"
     write_geotiff(path, pixels.astype(np.float32), gsd_m=0.7)
+    return str(path)
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory):
+    """An archive of the printed table of KOMPSAT-3."""
+    path = tmp_path_factory.mktemp("archive") / "published.db"
+    with Archive(path) as archive:
+        archive.add_entries(published_entries("kompsat3-2014"))
     return str(path)
 
 

@@ -7,19 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from acutance.archive import Archive
-from acutance.archive.published import published_entries
 from acutance.archive.trends import Trend
 
 ONE = ["--sensor", "KOMPSAT-3", "--orientation", "across"]
-
-
-@pytest.fixture(scope="module")
-def place(tmp_path_factory: pytest.TempPathFactory) -> str:
-    path: Path = tmp_path_factory.mktemp("archive") / "published.db"
-    with Archive(path) as archive:
-        archive.add_entries(published_entries("kompsat3-2014"))
-    return str(path)
 
 
 def spec_file(folder: Path, *requirements: str) -> str:

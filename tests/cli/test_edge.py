@@ -1,6 +1,7 @@
 """``acutance edge``: text, JSON, files, checks and refusals."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -100,6 +101,15 @@ def test_every_drawing_is_written_by_itself(acutance, edge_image, tmp_path):
     content = (tmp_path / "e-modulation-transfer-function.pdf").read_bytes()
     assert b"/Type3" not in content
     assert b"/CIDFontType2" in content
+
+
+def test_no_drawing_takes_the_place_of_an_input(refused, edge_image, tmp_path):
+    image = tmp_path / "e-line-spread-function.png"
+    # A GeoTIFF is known by its first bytes.
+    image.write_bytes(Path(edge_image).read_bytes())
+    before = image.read_bytes()
+    refused(["edge", image, "--panels", tmp_path / "e.png"], "e-line-spread-function.png")
+    assert image.read_bytes() == before
 
 
 def test_drawings_of_compared_methods_are_numbered(acutance, edge_image, shown, tmp_path):

@@ -4,20 +4,8 @@ from __future__ import annotations
 
 import csv
 import json
-from pathlib import Path
 
 import pytest
-
-from acutance.archive import Archive
-from acutance.archive.published import published_entries
-
-
-@pytest.fixture(scope="module")
-def place(tmp_path_factory: pytest.TempPathFactory) -> str:
-    path: Path = tmp_path_factory.mktemp("archive") / "published.db"
-    with Archive(path) as archive:
-        archive.add_entries(published_entries("kompsat3-2014"))
-    return str(path)
 
 
 def test_a_watch_is_planned(acutance, tmp_path):

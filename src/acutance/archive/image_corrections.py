@@ -41,7 +41,6 @@ CORRECTED: Final = ("sensor", "level", BAND, "acquired", "gsd_m", *ANGLES)
 """What of an image can be corrected."""
 _MEASURES: Final = ("acquired", "gsd_m")
 _SAME_GSD: Final = 1e-6
-"""Images of one question to the database."""
 
 
 @dataclass(frozen=True, kw_only=True)

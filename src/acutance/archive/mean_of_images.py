@@ -12,6 +12,7 @@ from dataclasses import replace
 from typing import Final
 
 import numpy as np
+from scipy.special import logsumexp
 
 from acutance.archive.trends.images import ImageMeans, image_means
 from acutance.archive.trends.normal_mixture import NormalMixture
@@ -56,11 +57,11 @@ def mean_of_images(series: Series) -> WeightedMean:
         found = weighted_mean(known.value, known.std, systematic_std=systematic, lowest=lowest)
         return replace(found, count=1)
     undated = replace(known, when=np.zeros(known.size))
-    images = image_means(undated)
+    effects, cleared = effects_and_images(undated)
+    images = image_means(undated) if effects.are_known else cleared
     found = weighted_mean(
         images.value, np.sqrt(images.variance), systematic_std=images.systematic_std, lowest=lowest
     )
-    effects, cleared = effects_and_images(undated)
     return _with_targets(found, effects, cleared) if effects.are_known else found
 
 
@@ -97,6 +98,4 @@ def _log_density(effects: EffectsGiven, images: ImageMeans, level: float) -> flo
         volume = float(np.linalg.slogdet(inner)[1]) - float(np.log(weight).sum()) + np.log(total)
         prior = np.log(scatter / (1 + (scatter / (SCATTER * level)) ** 2))
         found.append(prior - 0.5 * (volume + square))
-    highest = max(found)
-    log_sum = float(np.log(np.exp(np.array(found) - highest).sum()))
-    return effects.log_evidence + float(highest) + log_sum
+    return effects.log_evidence + float(logsumexp(found))

@@ -82,7 +82,7 @@ def measure_target(
     if len(parts) == 1 and not pixels.are_several:
         outputs.deliver(measure(parts[0]), parts[0].document)
     else:
-        _deliver_parts(outputs, parts, measure, kept)
+        _deliver_parts(outputs, parts, measure)
 
 
 @dataclass(frozen=True)
@@ -199,7 +199,6 @@ def _deliver_parts(
     outputs: Outputs,
     parts: Sequence[_Part],
     measure: Callable[[_Part], Shown],
-    kept: tuple[str | None, ...],
 ) -> None:
     """Measure every region of every band; one that holds no target is named, and the others go on.
 
@@ -212,7 +211,7 @@ def _deliver_parts(
 
     found: dict[int, Shown] = {}
     rejected: dict[int, str] = {}
-    owns = outputs.of_regions([one.stem for one in parts], kept)
+    owns = outputs.of_regions([one.stem for one in parts])
     for place, (part, own) in enumerate(zip(parts, owns, strict=True)):
         try:
             found[place] = measure(part)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from acutance.cli.options import ResultOptions
-from acutance.cli.output import OutputFile, check_optional
+from acutance.cli.output import OutputFile, check_optional, check_output
 from acutance.cli.terminal import FAILED_CHECK, command_line, say
 from acutance.errors import OptionError
 
@@ -59,6 +59,8 @@ class Outputs:
     ----------
     figure, panels, report, csv : OutputFile or None
         The panels are files of their own, named after this one.
+    inputs : tuple of str or None
+        What the command reads: no output may overwrite a file of them.
     as_json, covariance, strict : bool
     required : tuple of ToleranceLimit
         Requirements to be answered.
@@ -68,6 +70,7 @@ class Outputs:
     panels: OutputFile | None
     report: OutputFile | None
     csv: OutputFile | None
+    inputs: tuple[str | None, ...]
     as_json: bool
     covariance: bool
     strict: bool
@@ -98,10 +101,10 @@ class Outputs:
             check_optional("--panels", options.panels, FIGURE_ENDINGS, keep=kept),
             check_optional("--report", options.report, (".html",), keep=kept),
             check_optional("--csv", options.csv, (".csv",), keep=kept),
-            options.as_json, options.covariance, options.strict, options.required,
+            kept, options.as_json, options.covariance, options.strict, options.required,
         )  # fmt: skip
 
-    def of_regions(self, names: Sequence[str], inputs: Iterable[str | None]) -> list[Outputs]:
+    def of_regions(self, names: Sequence[str]) -> list[Outputs]:
         """Outputs of several regions: files that carry the region's name, "edge-north.png".
 
         Raises
@@ -109,16 +112,19 @@ class Outputs:
         OptionError
             If a file cannot be written.
         """
-        kept, stems = tuple(inputs), _file_names(names)
+
+        def named(output: OutputFile | None, stem: str) -> OutputFile | None:
+            return None if output is None else _beside(output, stem, self.inputs)
+
         return [
             replace(
                 self,
-                figure=_named(self.figure, stem, kept),
-                panels=_named(self.panels, stem, kept),
-                report=_named(self.report, stem, kept),
-                csv=_named(self.csv, stem, kept),
+                figure=named(self.figure, stem),
+                panels=named(self.panels, stem),
+                report=named(self.report, stem),
+                csv=named(self.csv, stem),
             )
-            for stem in stems
+            for stem in _file_names(names)
         ]
 
     def deliver(self, shown: Shown, marks: Mapping[str, Any] | None = None) -> None:
@@ -149,7 +155,7 @@ class Outputs:
             figure = report.draw(shown.result, **shown.drawn_on)
             self.figure.deliver(report.figure_bytes(figure, self.figure.ending))
         if self.panels is not None:
-            _write_panels(self.panels, shown)
+            _write_panels(self.panels, shown, self.inputs)
         if self.report is not None:
             page = report.page(
                 shown.result, command=command_line(), required=self.required, **shown.drawn_on
@@ -193,7 +199,7 @@ class Outputs:
         return sum(answer.word != MET for answer in answers)
 
 
-def _write_panels(output: OutputFile, shown: Shown) -> None:
+def _write_panels(output: OutputFile, shown: Shown, inputs: tuple[str | None, ...]) -> None:
     """Every drawing of every measurement in a file of its own; those of several are numbered."""
     from acutance import report
 
@@ -201,17 +207,15 @@ def _write_panels(output: OutputFile, shown: Shown) -> None:
     for number, measurement in enumerate(shown.measurements, start=1):
         which = f"{number}-" if len(shown.measurements) > 1 else ""
         for panel in report.panels(measurement, backdrop=backdrop):
-            one = _named(output, f"{which}{panel.name}", ())
-            assert one is not None
+            one = _beside(output, f"{which}{panel.name}", inputs)
             one.deliver(report.figure_bytes(report.panel_figure(panel), one.ending))
 
 
-def _named(output: OutputFile | None, stem: str, kept: tuple[str | None, ...]) -> OutputFile | None:
-    if output is None:
-        return None
+def _beside(output: OutputFile, stem: str, inputs: tuple[str | None, ...]) -> OutputFile:
+    """The file named after another and what is in it, "edge-north.png"."""
     path = output.path
     name = str(path.with_name(f"{path.stem}-{stem}{path.suffix}"))
-    return check_optional(output.option, name, (path.suffix.lower(),), keep=kept)
+    return check_output(output.option, name, (output.ending,), keep=inputs)
 
 
 def _file_names(names: Sequence[str]) -> list[str]:

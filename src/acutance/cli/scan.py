@@ -167,7 +167,7 @@ def scan(
     (region,) = regions.values()
     if pixels.are_several:
         # Files that cannot be written, or are others of the run, are found out before the work.
-        outputs.of_regions([_band_stem(str(one.band)) for one in images], kept)
+        outputs.of_regions([_band_stem(str(one.band)) for one in images])
 
     from acutance.scan import BandScenes, ScanOptions, scan_bands, scan_scene
     from acutance.scan.parquet import require_parquet
@@ -199,7 +199,7 @@ def scan(
     if table is not None:
         _write_edges(table, found.edges, images[0])
     if isinstance(found, BandScenes):
-        _deliver_bands(outputs, found, kept, images)
+        _deliver_bands(outputs, found, images)
     else:
         is_drawn = outputs.figure is not None or outputs.report is not None
         outputs.deliver(Shown(found, _backdrop(images[0], found) if is_drawn else {}))
@@ -242,9 +242,7 @@ def _band_stem(name: str) -> str:
     return f"band-{name}"
 
 
-def _deliver_bands(
-    outputs: Outputs, found: BandScenes, kept: tuple[str | None, ...], images: Sequence[Image]
-) -> None:
+def _deliver_bands(outputs: Outputs, found: BandScenes, images: Sequence[Image]) -> None:
     """One page and one document of all bands; figures and curves in files of their own."""
     from acutance import report
 
@@ -257,7 +255,7 @@ def _deliver_bands(
             for name, scene in found.scenes.items()
         }
     each = [Shown(scene, looks[name]) for name, scene in found.scenes.items()]
-    for own, shown in zip(outputs.of_regions(names, kept), each, strict=True):
+    for own, shown in zip(outputs.of_regions(names), each, strict=True):
         replace(own, report=None).write_files(shown)
     if outputs.report is not None:
         backdrops = {name: look["backdrop"] for name, look in looks.items()}

@@ -122,7 +122,7 @@ class MirrorPlanOptions:
                 raise OptionError(f"{name} is {value:g}: it has to be {low:g} to {high:g}")
         if self.accuracy is not None and not 0 < self.accuracy < math.inf:
             raise OptionError(f"accuracy is {self.accuracy:g}: it has to be finite and above 0")
-        if self.accuracy is not None and 0 <= self.draws < 2:
+        if self.accuracy is not None and self.draws < 2:
             raise OptionError(
                 f"accuracy (--accuracy) is answered by simulated images, and draws (--draws) is "
                 f"{self.draws}: give 2 or more"
@@ -234,7 +234,7 @@ class MirrorPlan:
 
     def to_dict(self) -> dict[str, Any]:
         """The plan for JSON."""
-        layout, options = self.layout, self.options
+        layout, options, images = self.layout, self.options, self.images_needed
         return {
             "schema": "acutance/mirror-plan/1",
             "arrangement": options.arrangement,
@@ -262,9 +262,7 @@ class MirrorPlan:
             "scatter": dict(self.scatter),
             "bias": dict(self.bias),
             "accuracy": options.accuracy,
-            "images_needed": None
-            if self.images_needed is None or math.isinf(self.images_needed)
-            else self.images_needed,
+            "images_needed": images if images is not None and math.isfinite(images) else None,
             "notes": list(self.notes),
         }
 

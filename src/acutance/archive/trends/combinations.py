@@ -12,6 +12,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import logsumexp
 
 from acutance.archive.trends.design import Design
 from acutance.archive.trends.images import ImageMeans
@@ -202,9 +203,7 @@ def _likely(models: dict[State, _Model], first: Mapping[State, float]) -> dict[S
 
 def _log_sum(found: list[StepSets]) -> float:
     """Log of the summed weights."""
-    log_weight = np.concatenate([sets.log_weight for sets in found])
-    highest = float(log_weight.max())
-    return highest + float(np.log(np.exp(log_weight - highest).sum()))
+    return float(logsumexp(np.concatenate([sets.log_weight for sets in found])))
 
 
 def _of_sets(
@@ -221,8 +220,7 @@ def _of_sets(
         step_evidences(model.regression, sets.steps[best], 1 / STEP_STD**2) + model.log_prior
         for model in models.values()
     ]) + sets.log_prior[best] + log_missing  # fmt: skip
-    highest = float(log_each.max())
-    log_sum = highest + float(np.log(np.exp(log_each - highest).sum()))
+    log_sum = float(logsumexp(log_each))
     places = _NODES_OF_FEW if images.size <= _FEW_IMAGES else _NODES
     found = []
     for (state, model), row in zip(models.items(), log_each, strict=True):

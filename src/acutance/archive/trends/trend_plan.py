@@ -16,6 +16,7 @@ from acutance.archive.trends.fit_trend import fit_trend
 from acutance.archive.trends.series import Series
 from acutance.archive.trends.trend import Trend
 from acutance.archive.trends.tuned import MIN_IMAGES
+from acutance.curves.estimate import normal_quantile
 from acutance.curves.grid import Floats
 from acutance.errors import OptionError
 from acutance.execution import run_tasks
@@ -26,8 +27,8 @@ __all__ = ["NOTICED", "PlannedWatch", "TrendPlan", "TrendPlanOptions", "plan_tre
 SCHEMA: Final = "acutance/trend-plan/1"
 NOTICED: Final = 0.8
 """Probability from which a drift is called noticed: the usual power of a planned test."""
-_TWO_SIDED_95: Final = 1.959964
-_NOTICED_STDS: Final = _TWO_SIDED_95 + 0.841621
+_TWO_SIDED_95: Final = normal_quantile(0.95)
+_NOTICED_STDS: Final = _TWO_SIDED_95 + normal_quantile(2 * NOTICED - 1)
 """A drift of so many deviations lies outside of 0 with that probability (normal densities)."""
 _MAX_IMAGES: Final = 2000
 _START: Final = 2000.0

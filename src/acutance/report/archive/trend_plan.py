@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from acutance.archive.counted import counted
+from acutance.archive.trends.trend_plan import NOTICED
 from acutance.report.labels import MISSING, format_number
 from acutance.report.paper import FAINT, INK, PALETTE, new_page, styled
 from acutance.report.text import align_columns
@@ -105,7 +106,7 @@ def trend_plan_figure(plan: TrendPlan) -> Figure:
             noticed.plot(years, [one.noticed for one in designs], "o-", color=color, label=label)
         asked = _per_cent(options.drift_per_year)
         _line(least, abs(options.drift_per_year), f"{asked} a year")
-        _line(noticed, 0.8, "8 of 10")
+        _line(noticed, NOTICED, "8 of 10")
         least.set(yscale="log", xlabel="years from now", ylabel="least drift noticed, a year",
                   title="Noticed in 8 of 10 cases")  # fmt: skip
         noticed.set(ylim=(-0.03, 1.03), xlabel="years from now", ylabel="noticed",

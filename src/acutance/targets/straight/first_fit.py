@@ -130,4 +130,4 @@ def fit_first(
 
 def _steps(profile: Profile) -> tuple[float, ...]:
     """The free parameters of a profile: a pulse's width and height ratio."""
-    return (profile.positions_px[1], -profile.shares[1]) if len(profile.shares) > 1 else ()
+    return () if profile.is_edge else (profile.positions_px[1], -profile.shares[1])

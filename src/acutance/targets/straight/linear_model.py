@@ -110,11 +110,6 @@ class Linear:
     prior: Prior
     rounding: Rounding
 
-    @property
-    def is_edge(self) -> bool:
-        """Whether the target has one step; a pulse has two or more."""
-        return len(self.first_fit.profile.shares) == 1
-
     @classmethod
     def about(
         cls,
@@ -133,7 +128,7 @@ class Linear:
         s, t = first_fit.line.distances(pixels.row, pixels.col)
         seen = profile.seen(first_fit.blur, s)
         mean, slope = profile.response(seen)
-        sides, is_edge = profile.sides(seen, s), len(profile.shares) == 1
+        sides, is_edge = profile.sides(seen, s), profile.is_edge
         trends = plateau_trends(sides, t)
         beside = [away / width for _, away in sides]
         if is_edge:

@@ -132,7 +132,7 @@ def find_curvature(data: CheckData, profile: Profile, sign: float = 1.0) -> Curv
         -1 of a dark pulse, whose values are negated.
     """
     try:
-        return _of_edge(data) if len(profile.shares) == 1 else _of_pulse(data, profile, sign)
+        return _of_edge(data) if profile.is_edge else _of_pulse(data, profile, sign)
     except TargetError:
         return NO_CURVATURE
 

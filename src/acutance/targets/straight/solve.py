@@ -218,7 +218,7 @@ def solve(
     for _ in range(_MAX_PASSES):
         solved = _pass(linear, outlier, whiteness.inflation, roughness, earlier)
         standard = solved.standard
-        has_noise = linear.is_edge or _has_settled_noise(solved, outlier)
+        has_noise = first_fit.profile.is_edge or _has_settled_noise(solved, outlier)
         heavy = robust and has_noise and float(np.abs(standard).max()) > _OUTLYING
         again = _reweighted(standard, linear) if heavy else outlier
         found = correlation(_bounded(standard), *pixels.at, [linear.first_fit.line.normal])
@@ -322,7 +322,7 @@ def _pass(
     """Solve for the correction of the LSF, the levels, the line and the profile."""
     # What the first fit leaves beside an edge is structure of the ground: weights have to know it.
     left = linear.first_residual
-    if earlier is not None and not linear.is_edge:
+    if earlier is not None and not linear.first_fit.profile.is_edge:
         left = earlier.residual
     noise = linear.noise(left, outlier, roughness)
     weight = outlier / noise.relative

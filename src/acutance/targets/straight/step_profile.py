@@ -38,6 +38,11 @@ class Profile:
     positions_px: tuple[float, ...]
     shares: tuple[float, ...]
 
+    @property
+    def is_edge(self) -> bool:
+        """Whether there is one step; a pulse has two or more."""
+        return len(self.shares) == 1
+
     def distances(self, s: Floats) -> list[Floats]:
         """Normal distance from every step, (n,) each."""
         return [s - position if position else s for position in self.positions_px]
