@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from acutance.arguments import require_types
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.errors import OptionError, PhaseError
@@ -17,7 +18,6 @@ from acutance.studies.result import Finding, StudyResult
 from acutance.studies.table import Table
 from acutance.studies.targets import measure_published_pulse
 from acutance.studies.trials import Execution, Record, run_trials
-from acutance.targets.options import require_types
 from acutance.targets.straight import measure_pulse
 from acutance.targets.straight.published.local_polynomial import window_gain
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from acutance.arguments import require_types
 from acutance.errors import OptionError
 from acutance.optics import Sensor, preset
 from acutance.simulate import GroundNoise, pulse
@@ -15,7 +16,6 @@ from acutance.studies.scatter import error_columns, find_minimum, find_refusal
 from acutance.studies.table import Cell, Table
 from acutance.studies.targets import ESTIMATOR_WORDS, ESTIMATORS, Estimator, measure_both_pulses
 from acutance.studies.trials import Execution, Record, run_trials
-from acutance.targets.options import require_types
 
 __all__ = ["GroundNoiseOptions", "study_ground_noise"]
 

@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from acutance.arguments import require_types
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.errors import OptionError, TargetError
@@ -30,7 +31,6 @@ from acutance.studies.mirror_layout import (
     lay_out_mirrors,
 )
 from acutance.studies.trials import Execution, Record, run_trials
-from acutance.targets.options import require_types
 from acutance.targets.points import measure_points
 
 __all__ = ["MirrorPlan", "MirrorPlanOptions", "place_errors_px", "plan_mirrors"]

@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 
+from acutance.arguments import require_types
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.errors import OptionError, TargetError
@@ -18,7 +19,6 @@ from acutance.studies.bound import Design, equivalent_blur, free_bound, shape_bo
 from acutance.studies.result import Finding, StudyResult
 from acutance.studies.table import Cell, Table
 from acutance.studies.trials import Execution, Record, run_trials
-from acutance.targets.options import require_types
 from acutance.targets.straight import measure_edge, measure_pulse
 
 __all__ = ["MAX_WIDTH_PX", "MIN_WIDTH_PX", "PLAN_METRICS", "PlanOptions", "plan_target"]

@@ -8,6 +8,7 @@ from typing import Literal
 
 import numpy as np
 
+from acutance.arguments import require_types
 from acutance.errors import OptionError
 from acutance.optics import Sensor, preset
 from acutance.simulate import Noise, edge, pulse
@@ -22,7 +23,6 @@ from acutance.studies.targets import (
     measure_both_pulses,
 )
 from acutance.studies.trials import Execution, Record, run_trials
-from acutance.targets.options import require_types
 
 __all__ = ["SnrOptions", "SnrTrial", "study_snr"]
 

@@ -7,6 +7,7 @@ from typing import Literal
 
 import numpy as np
 
+from acutance.arguments import require_types
 from acutance.curves.grid import FREQ_CPP
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.errors import OptionError
@@ -16,7 +17,6 @@ from acutance.studies.result import Finding, StudyResult
 from acutance.studies.table import Table
 from acutance.studies.targets import ESTIMATORS, measure_published_pulse
 from acutance.studies.trials import Execution, Record, run_trials
-from acutance.targets.options import require_types
 from acutance.targets.straight import measure_pulse
 from acutance.targets.straight.pulse_spectrum import width_error_gain
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from acutance.arguments import require_types
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.errors import OptionError, TargetError
@@ -17,7 +18,6 @@ from acutance.studies.table import Cell, Table
 from acutance.studies.targets import ESTIMATORS, measure_published_pulse
 from acutance.studies.trials import Execution, Record, run_trials
 from acutance.studies.width import WIDTH_FREQ_CPP
-from acutance.targets.options import require_types
 from acutance.targets.straight import measure_pulse
 from acutance.targets.straight.pulse_spectrum import width_error_gain
 from acutance.targets.straight.pulse_width import smoothest_width

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from acutance.arguments import require_types
 from acutance.errors import OptionError
 from acutance.geometry.bar_group import Bars
 from acutance.targets.check import Limits, require_limits
-from acutance.targets.options import require_types
 from acutance.targets.periodic.bars_checks import BARS_CHECKS
 from acutance.targets.periodic.stated_contrast import Levels, stated_levels
 

@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass, field
 from typing import Any
 
+from acutance.arguments import require_types
 from acutance.errors import OptionError
 from acutance.targets.check import Limits, require_limits
-from acutance.targets.options import require_types
 from acutance.targets.periodic.star_checks import STAR_CHECKS
 from acutance.targets.periodic.star_waves import Wave
 from acutance.targets.periodic.stated_contrast import Levels, stated_levels

@@ -27,9 +27,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import least_squares
 
+from acutance.arguments import require_types
 from acutance.curves.grid import Floats
 from acutance.errors import OptionError, SupportError
-from acutance.targets.options import require_types
 from acutance.targets.points.detect import RejectedSpot
 
 __all__ = [

@@ -13,9 +13,9 @@ from typing import Literal
 
 import numpy as np
 
+from acutance.arguments import require_types
 from acutance.curves.grid import Floats
 from acutance.errors import OptionError, SupportError
-from acutance.targets.options import require_types
 from acutance.targets.straight.pixels import EdgeFit, EdgePixels
 from acutance.targets.straight.published.edge_location import centroid_locations
 from acutance.targets.straight.published.resampled_response import (
