@@ -18,6 +18,7 @@ from acutance.errors import ModelError, OptionError
 __all__ = [
     "require_all",
     "require_choice",
+    "require_class",
     "require_finite",
     "require_flags",
     "require_floats",
@@ -104,6 +105,21 @@ def require_kind(kind: type[Any], **values: Any) -> None:
     for name, value in values.items():
         if not isinstance(value, kind):
             raise OptionError(f"{name} is {value!r:.80}: give {kind.__name__}(...)")
+
+
+def require_class(name: str, **values: Any) -> None:
+    """Refuse what is no object of a class, which is told by its name and need not be loaded.
+
+    Raises
+    ------
+    OptionError
+        Names the argument and the class.
+    """
+    for argument, value in values.items():
+        if name not in (one.__name__ for one in type(value).__mro__):
+            raise OptionError(
+                f"{argument} is {value!r:.80}, a {type(value).__name__}: give {name}(...)"
+            )
 
 
 def require_optional(kind: type[Any], **values: Any) -> None:

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import chdtri, ndtr, stdtr, stdtrit
 
+from acutance.arguments import require_numbers
 from acutance.curves import Estimate
 from acutance.curves.estimate import normal_quantile
 from acutance.curves.grid import Floats
@@ -64,7 +65,14 @@ class WeightedMean:
     count: int
 
     def probability_below(self, limit: float) -> float:
-        """How probable it is that the mean is below `limit`; ``nan`` of one measurement."""
+        """How probable it is that the mean is below `limit`; ``nan`` of one measurement.
+
+        Raises
+        ------
+        OptionError
+            If it is no number.
+        """
+        require_numbers(limit=limit)
         if self.count < 2 or not self.mean.std > 0:
             return float("nan")
         away, degrees = limit - self.mean.value, self.count - 1
