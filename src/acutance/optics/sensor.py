@@ -118,6 +118,12 @@ class Sensor:
     gsd_along_m : float, optional
         Distance from one row to the next in metres, where it differs from that between columns.
 
+    Raises
+    ------
+    ModelError
+        If there is no block, one has no OTF, a pupil is described twice, or a GSD is
+        not above 0.
+
     Examples
     --------
     >>> from acutance import optics

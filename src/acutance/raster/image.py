@@ -87,6 +87,11 @@ class Image(ShortRepr):
         The nodata value that was stated when the file was opened.
     restored : str or None
         The filter that restored the band, by the tag that `acutance.restore` wrote.
+
+    Raises
+    ------
+    OptionError
+        If there is no such axis along track.
     """
 
     path: str | None
@@ -115,7 +120,13 @@ class Image(ShortRepr):
 
     @classmethod
     def of(cls, image: Image | ArrayLike) -> Image:
-        """What stands for an image: itself, or an array as one (`from_array`)."""
+        """What stands for an image: itself, or an array as one (`from_array`).
+
+        Raises
+        ------
+        ImageError
+            If there is none, or it is no array that can be an image.
+        """
         if image is None:
             raise ImageError("the image is None: give an array, or open_image(path)")
         return image if isinstance(image, Image) else cls.from_array(image)

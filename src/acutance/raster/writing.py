@@ -206,7 +206,13 @@ def _advice(dtype: np.dtype[Any]) -> str:
 
 @contextmanager
 def written_in_our_words(target: Path, advice: str) -> Iterator[None]:
-    """What cannot be written, as an error that tells what to do."""
+    """What cannot be written, as an error that tells what to do.
+
+    Raises
+    ------
+    ImageError
+        If the file cannot be written in there: what GDAL says, in a sentence.
+    """
     from rasterio._err import CPLE_BaseError
     from rasterio.errors import RasterioError
 

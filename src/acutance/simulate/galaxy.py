@@ -49,6 +49,11 @@ class Galaxy:
         Minor over major axis, 0.1 to 1.
     turn_deg : float
         Direction of the major axis, from the column axis towards the row axis.
+
+    Raises
+    ------
+    ModelError
+        If a number or the profile makes no sense.
     """
 
     row: float

@@ -45,6 +45,11 @@ class SkyField:
         Half-light radii of galaxies, log-uniform in this range.
     bulges : float
         Share of the galaxies with a de Vaucouleurs profile; the others are exponential discs.
+
+    Raises
+    ------
+    ModelError, OptionError
+        If a number makes no sense, or a range does not rise.
     """
 
     stars: int = 30

@@ -51,6 +51,11 @@ class Star:
         360 for a full star, less for a fan.
     finest_cpp : float
         Inside the radius where the spokes reach this frequency the star is uniform grey.
+
+    Raises
+    ------
+    ModelError
+        If a number or the wave makes no sense, or the grey centre reaches the rim.
     """
 
     row: float

@@ -58,6 +58,11 @@ class TrendPlanOptions:
         Simulated series of each design, 10 or more; 0 leaves the simulation out.
     seed : int
         Of the random numbers.
+
+    Raises
+    ------
+    OptionError
+        If a value is of another kind, or makes no sense.
     """
 
     images_per_year: tuple[float, ...] = (12.0,)

@@ -38,6 +38,11 @@ class BiresolutionOptions:
         it.
     limits : mapping of str to float
         Limits of checks (`PAIR_CHECKS`), by name, instead of those of the table.
+
+    Raises
+    ------
+    OptionError
+        If a value is of another kind, or makes no sense.
     """
 
     stop_change: float = 1e-4

@@ -35,6 +35,11 @@ class BarsOptions:
         Bound the weight of outlying pixels.
     limits : mapping of str to float
         Limits of the checks, where they differ from those of `acutance.targets.QUESTIONS`.
+
+    Raises
+    ------
+    OptionError
+        If a value is of another kind, or contradicts another.
     """
 
     groups: tuple[Bars, ...] = ()

@@ -38,6 +38,11 @@ class StarOptions:
         Bound the weight of outlying pixels.
     limits : mapping of str to float
         Limits of the checks, where they differ from those of `acutance.targets.QUESTIONS`.
+
+    Raises
+    ------
+    OptionError
+        If a value is of another kind, or contradicts another.
     """
 
     wave: Wave = "sine"

@@ -53,6 +53,11 @@ class Iso12233Options:
         Draws of the rows for the standard deviations; 0 gives none.
     seed : int
         Of the generator that draws them.
+
+    Raises
+    ------
+    OptionError
+        If a value is of another kind, or makes no sense.
     """
 
     bins_per_px: int = 4

@@ -67,6 +67,11 @@ class KompsatOptions:
         Draws of the rows for the standard deviations; 0 gives none.
     seed : int
         Of the generator that draws them.
+
+    Raises
+    ------
+    OptionError
+        If a value is of another kind, or makes no sense.
     """
 
     distance: Literal["normal", "as-drafted"] = "normal"

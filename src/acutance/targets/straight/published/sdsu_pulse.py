@@ -71,6 +71,11 @@ class SdsuPulseOptions:
         Draws of the rows for the standard deviations; 0 gives none.
     seed : int
         Of the generator that draws them.
+
+    Raises
+    ------
+    OptionError
+        If a value is of another kind, or makes no sense.
     """
 
     order: Literal[2, 4] = 2
