@@ -139,3 +139,20 @@ def test_a_comparison_names_images_of_days_to_come(tmp_path):
     assert found.notes == ("1 image has a date to come: a simulation, or wrong.",)
     assert found.notes[0] in found.summary
     assert found.to_dict()["notes"] == list(found.notes)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"value": "x"}, "value is 'x': it has to hold numbers"),
+        ({"value": [], "std": []}, "0 measurements"),
+        ({"std": [0.1, 0.1, 0.1]}, r"std has the shape \(3,\), the values \(2,\): give"),
+        ({"systematic_std": "x"}, "systematic_std is 'x'"),
+        ({"group": 3}, "group is 3: give a list"),
+        ({"group": [1]}, "1 groups of 2 measurements: give one of each"),
+        ({"lowest": "x"}, "lowest is 'x', it has to be a number"),
+    ],
+)
+def test_means_are_of_numbers(arguments, message):
+    with pytest.raises(OptionError, match=message):
+        weighted_mean(**{"value": [0.1, 0.2], "std": [0.1, 0.1], **arguments})

@@ -37,6 +37,11 @@ def zeros_cpp(width_px: float, up_to_cpp: float = 1.0) -> Floats:
     -------
     (n,) array
         Ascending; empty where the first zero lies higher.
+
+    Raises
+    ------
+    OptionError
+        If the width is not above 0.
     """
     if not width_px > 0:
         raise OptionError(f"a pulse has a width of {width_px:g} px: give one above 0")
@@ -59,6 +64,11 @@ def width_error_gain(
     -------
     array
         Infinite where only the used width has a zero.
+
+    Raises
+    ------
+    OptionError
+        If a width is not above 0.
     """
     freq = np.asarray(freq_cpp, dtype=float)
     true, used = np.asarray(width_true_px, dtype=float), np.asarray(width_used_px, dtype=float)

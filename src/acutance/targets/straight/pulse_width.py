@@ -106,6 +106,11 @@ def smoothest_width(
     WidthSearch
         Noise-free it finds the width to 0.02 px for smooth MTFs of every kind. It has no
         standard deviation: the joint fit's width has, which the check ``width_sigmas`` compares.
+
+    Raises
+    ------
+    OptionError
+        If there are fewer than three widths, or one is not above 0.
     """
     stated = fit.pulse_width.value
     if widths_px is None:
