@@ -26,6 +26,7 @@ FLOORS = (
     "optics",
     "curves",
     "execution",
+    "arguments",
     "errors",
     "names_on_use",
 )

@@ -121,6 +121,17 @@ def test_exports_are_imported(acutance, campaign, tmp_path, to):
     assert [one["sensor"] for one in counts["sensors"]] == ["K3", "QB02"]
 
 
+def test_the_ending_of_a_file_says_its_format(acutance, refused, campaign, tmp_path):
+    named, stated = tmp_path / "named.jsonl", tmp_path / "stated.jsonl"
+    assert acutance("archive", "export", campaign, named).exit_code == 0
+    assert acutance("archive", "export", campaign, stated, "--to", "jsonl").exit_code == 0
+    assert named.read_bytes() == stated.read_bytes()
+    words = ("archive", "export", campaign, tmp_path / "catalogue")
+    refused(
+        words, "names no format by its ending (.jsonl, .ndjson, .parquet, .csv): state it, --to"
+    )
+
+
 @pytest.mark.parametrize(
     "words",
     [

@@ -18,7 +18,7 @@ from acutance.targets.straight.published import (
     sdsu_2005_pulse,
 )
 from acutance.targets.straight.published.pulse_gains import sdsu_pulse_gains
-from acutance.targets.straight.pulse_width import width_error_gain
+from acutance.targets.straight.pulse_spectrum import width_error_gain
 
 SENSOR = preset("generic-2005")
 CYCLES_OF_6_DEG = 95  # rows: ten whole cycles of the sample phases

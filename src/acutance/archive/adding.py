@@ -102,6 +102,8 @@ def add_entries(
     OptionError
         If one holds what no archive, image or target can, or there is no such run.
     """
+    if isinstance(entries, str) or not isinstance(entries, Iterable):
+        raise OptionError(f"entries are {entries!r:.80}: give a list of Entry(...)")
     added, read = 0, 0
     with ThreadPoolExecutor(1) as writer:
         # While one chunk is written, the next is put into rows.

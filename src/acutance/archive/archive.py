@@ -26,6 +26,7 @@ from acutance.archive.restored_images import restored_sources
 from acutance.archive.rows_of_runs import RowsOfRuns
 from acutance.archive.selection import Selection, SelectionWords
 from acutance.archive.stored_entries import select_ids, stored_entries, undamaged_entries
+from acutance.arguments import require_flags, require_optional, require_paths, require_whole
 from acutance.errors import OptionError
 from acutance.targets.measurement import Measurement
 from acutance.targets.record import Record
@@ -63,6 +64,7 @@ class Archive(Questions, RowsOfRuns):
     """
 
     def __init__(self, place: str | os.PathLike[str], *, read_only: bool = False) -> None:
+        require_flags(read_only=read_only)
         self._database = open_database(place, read_only=read_only)
         try:
             ensure_schema(self._database)
@@ -203,7 +205,7 @@ class Archive(Questions, RowsOfRuns):
         Parameters
         ----------
         corrections : iterable of ImageCorrection
-            Later ones go before earlier ones.
+            Later ones go before earlier ones; two names of one image must not give it two values.
         dry_run : bool, optional
             Change nothing, only return what would change.
 
@@ -215,7 +217,8 @@ class Archive(Questions, RowsOfRuns):
         Raises
         ------
         OptionError
-            If a correction means no image, or a file name that several have.
+            If a correction means no image, or a file name that several have, or two of them give
+            one image two values under different names.
         """
         return correct_images(self._database, corrections, dry_run=dry_run)
 
@@ -253,10 +256,13 @@ class Archive(Questions, RowsOfRuns):
         Raises
         ------
         OptionError
-            If there is none.
+            If there is none, or it is no whole number.
         ArchiveError
             If its document is damaged.
         """
+        require_whole(0, number=number)
+        # SQLite knows no whole numbers of numpy, which a column "id" has.
+        number = int(number)
         found = list(stored_entries(self._database, [number]))
         if not found:
             raise OptionError(f"there is no measurement {number} in the archive")
@@ -351,7 +357,13 @@ class Archive(Questions, RowsOfRuns):
         Imported
             How many were read, how many were new, and which files were refused: also those whose
             measurements are kept already with another sensor, date or level than is stated now.
+
+        Raises
+        ------
+        OptionError
+            If an argument is of the wrong kind.
         """
+        require_optional(str, sensor=sensor, level=level, band=band)
         from acutance.archive.exchange.documents import Stated
         from acutance.archive.exchange.importing import import_files
 
@@ -362,7 +374,7 @@ class Archive(Questions, RowsOfRuns):
             acquired=None if acquired is None else as_utc(acquired, "acquired"),
             target=target,
         )
-        several = [paths] if isinstance(paths, str | os.PathLike) else paths
+        several = [paths] if isinstance(paths, str | os.PathLike) else require_paths("paths", paths)
         return import_files(self._database, several, stated, run, progress)
 
     def rejected(self, **selection: Unpack[SelectionWords]) -> Rejections:

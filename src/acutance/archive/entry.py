@@ -163,7 +163,7 @@ class Entry:
     Raises
     ------
     OptionError
-        If there is neither a record nor a rejection, or both.
+        If there is neither a record nor a rejection, or both; if a field is of another kind.
     """
 
     record: Record | None = None
@@ -180,6 +180,11 @@ class Entry:
             raise OptionError(
                 f"an entry has either a record or a rejection, this one has {found}: give one"
             )
+        _require(self, Record | None, "m.record of a measurement", "record")
+        _require(self, Rejected | None, "Rejected(...)", "rejected")
+        _require(self, ImageEntry, "ImageEntry(...)", "image")
+        _require(self, TargetEntry | None, "TargetEntry(...)", "target")
+        _require(self, RunEntry | None, "RunEntry(...)", "run")
         _require_texts(self, "band", "key")
         _take_empty_for_none(self, "band")
         if self.key == "":

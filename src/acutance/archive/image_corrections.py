@@ -13,6 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from datetime import UTC, datetime
 from functools import partial
+from glob import has_magic
 from operator import itemgetter
 from typing import Any, Final
 
@@ -27,6 +28,7 @@ from acutance.archive.named_images import ImageKey, named_images
 from acutance.archive.packing import plain_json
 from acutance.archive.possible_values import image_faults, sides_of
 from acutance.archive.tables import directions, images, measurements
+from acutance.arguments import require_all, require_flags
 from acutance.errors import OptionError
 from acutance.raster.metadata.findings import ANGLES
 
@@ -139,6 +141,9 @@ class CorrectedImage:
     other_gsd: int
     rejections: int = 0
 
+    def __repr__(self) -> str:
+        return f"<CorrectedImage: {self.summary}>"
+
     @property
     def summary(self) -> str:
         """The changes in one line."""
@@ -189,13 +194,16 @@ def correct_images(
     ------
     OptionError
         If a correction means no image, a file name that several have, or names the band of an
-        image that was measured in several: nothing is changed.
+        image that was measured in several; if two give one image two values under different names:
+        nothing is changed.
     ArchiveError
         If the archive cannot be written.
     """
-    listed = list(corrections)
+    require_flags(dry_run=dry_run)
+    listed = require_all(ImageCorrection, "corrections", corrections)
     # Names are matched before the archive is locked for others.
     named = database.read(partial(named_images, names=[one.image for one in listed]))
+    _require_one_value(listed, named)
     wanted: dict[ImageKey, _Wanted] = {}
     for one in listed:
         for key in named[one.image]:
@@ -206,9 +214,30 @@ def correct_images(
     return database.read(work) if dry_run else database.write(work)
 
 
+def _require_one_value(
+    corrections: Iterable[ImageCorrection], named: Mapping[str, Sequence[ImageKey]]
+) -> None:
+    """Refuse two values of one image under two of its names, of which none is a pattern.
+
+    A pattern may be followed by an image that is an exception to it, and a name by itself again.
+    """
+    stated: dict[tuple[ImageKey, str], tuple[str, Any]] = {}
+    for one in corrections:
+        if has_magic(one.image) and len(named[one.image]) > 1:
+            continue
+        for key in named[one.image]:
+            for name, value in one.columns.items():
+                other, before = stated.get((key, name), (one.image, value))
+                if other != one.image and before != value:
+                    raise OptionError(
+                        f"nothing is corrected: {other} and {one.image} are one image, and its "
+                        f"{name} is to be {_word(before)} and {_word(value)}: leave one of them"
+                    )
+                stated[key, name] = one.image, value
+
+
 _Wanted = tuple[dict[str, Any], dict[str, str | None]]
 """New values and the reasons of them, by column."""
-_Row = dict[str, Any]
 
 
 def _correct(

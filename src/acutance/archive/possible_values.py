@@ -12,6 +12,7 @@ from typing import Any, Final
 
 from acutance.archive.dates import as_utc
 from acutance.archive.entry import UNKNOWN_KIND, Entry, ImageEntry, TargetEntry
+from acutance.arguments import require_kind
 from acutance.errors import OptionError
 from acutance.raster.gsd import Gsd
 from acutance.raster.metadata.findings import ANGLES
@@ -34,8 +35,9 @@ def require_possible(entry: Entry) -> None:
     Raises
     ------
     OptionError
-        If it has a date, a GSD, an angle, a place or a kind that there cannot be.
+        If it has a date, a GSD, an angle, a place or a kind that there cannot be; if it is none.
     """
+    require_kind(Entry, entry=entry)
     image, record = entry.image, entry.record
     is_own = record is not None and image.gsd_m == record.image.pixel_gsd_m
     faults = list(image_faults(_values(image), any_size=is_own))

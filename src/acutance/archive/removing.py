@@ -11,6 +11,7 @@ from sqlalchemy import Connection, Row, delete, select
 from acutance.archive.connection import Database, in_chunks
 from acutance.archive.named_images import ImageKey, named_images
 from acutance.archive.tables import images, measurements
+from acutance.arguments import require_flags, require_texts
 
 __all__ = ["earlier_contents", "remove_images", "remove_rejections"]
 
@@ -96,6 +97,8 @@ def remove_images(database: Database, names: Sequence[str], *, dry_run: bool = F
     ArchiveError
         If the archive cannot be written.
     """
+    require_flags(dry_run=dry_run)
+    names = require_texts("images", names)
     named = database.read(partial(named_images, names=names, done="removed"))
     keys = list(dict.fromkeys(key for some in named.values() for key in some))
     work = partial(_remove_images, keys=keys, dry_run=dry_run)

@@ -12,6 +12,7 @@ from acutance.archive.entry import ImageEntry
 from acutance.archive.outcomes import Outcome, kept_outcomes
 from acutance.archive.removing import earlier_contents, remove_images, remove_rejections
 from acutance.archive.runs import end_run, kept_keys, start_run
+from acutance.arguments import require_texts, require_whole
 
 __all__ = ["RowsOfRuns"]
 
@@ -31,7 +32,11 @@ class RowsOfRuns:
         images : iterable of str, optional
             Of images with this content (SHA-256).
         """
-        return kept_keys(self._database, run, None if images is None else list(images))
+        if run is not None:
+            require_whole(0, run=run)
+            run = int(run)
+        contents = None if images is None else list(require_texts("images", images))
+        return kept_keys(self._database, run, contents)
 
     def outcomes(self, images: Iterable[str]) -> dict[str, Outcome]:
         """How the rows of some images came out, by key: their verdict, or why they have none.
@@ -41,7 +46,7 @@ class RowsOfRuns:
         images : iterable of str
             Contents of images (SHA-256).
         """
-        return kept_outcomes(self._database, images)
+        return kept_outcomes(self._database, require_texts("images", images))
 
     def start_run(self, plan: Mapping[str, Any]) -> int:
         """Write down that a run began, with its plan; returns its number."""
@@ -86,7 +91,7 @@ class RowsOfRuns:
         int
             How many were removed.
         """
-        return remove_rejections(self._database, keys)
+        return remove_rejections(self._database, require_texts("keys", keys))
 
     def earlier_contents(self, now: Mapping[str, str]) -> dict[str, list[str]]:
         """Contents that files had before and of which there still are rows, by path.

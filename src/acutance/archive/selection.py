@@ -11,6 +11,7 @@ from sqlalchemy import Column, ColumnElement, or_
 
 from acutance.archive.dates import When, as_utc, end_of
 from acutance.archive.tables import VERDICTS, directions, images, measurements, targets
+from acutance.arguments import require_whole
 from acutance.curves import METRICS
 from acutance.errors import OptionError
 from acutance.targets.kinds import KINDS
@@ -107,16 +108,22 @@ class Selection:
         OptionError
             Names the filter, and what it can be.
         """
-        if self.verdict is not None and self.verdict not in VERDICTS:
+        if self.verdict is not None and str(self.verdict) not in VERDICTS:
             raise OptionError(
                 f"verdict is {self.verdict!r}: it is one of {', '.join(reversed(VERDICTS))}"
             )
-        for name in names_of(self.kind or ()):
+        for name in names_of(() if self.kind is None else self.kind):
             if name not in _KINDS:
                 raise OptionError(f"kind is {name!r}: it is one of {', '.join(_KINDS)}")
-        for name in names_of(self.orientation or ()):
+        for name in names_of(() if self.orientation is None else self.orientation):
             if name not in ("across", "along"):
                 raise OptionError(f"orientation is {name!r}: it is across or along")
+        if self.run is not None:
+            require_whole(0, run=self.run)
+        if not isinstance(self.limits, Mapping | None):
+            raise OptionError(
+                f"limits are {self.limits!r:.80}: give a dict, {{'mtf_nyquist': (0.1, None)}}"
+            )
         for metric, limits in (self.limits or {}).items():
             if metric not in METRICS:
                 raise OptionError(f"there is no metric {metric!r}, only {', '.join(METRICS)}")
@@ -136,10 +143,11 @@ class Selection:
         if self.orientation is not None:
             yield directions.c.orientation.in_(names_of(self.orientation))
         for metric, (low, high) in (self.limits or {}).items():
+            # SQLite compares no numbers of numpy.
             if low is not None:
-                yield directions.c[metric] >= low
+                yield directions.c[metric] >= float(low)
             if high is not None:
-                yield directions.c[metric] <= high
+                yield directions.c[metric] <= float(high)
 
     def of_entries(self) -> Iterator[ColumnElement[bool]]:
         """Conditions on measurements and rejections, with their images and targets."""
@@ -157,7 +165,7 @@ class Selection:
             columns = (images.c.path, images.c.name, images.c.content)
             yield or_(*(column.in_(named) for column in columns))
         if self.run is not None:
-            yield measurements.c.run_id == self.run
+            yield measurements.c.run_id == int(self.run)
 
     def by_name(self) -> Iterator[tuple[str, Column[Any], Names | None]]:
         """Filters by whole names: what each is called, its column, and what is wanted."""

@@ -21,6 +21,7 @@ from acutance.archive.natural_order import natural_key
 from acutance.archive.restored_images import restored_notes
 from acutance.archive.trends.measured_series import random_and_systematic, target_codes
 from acutance.archive.trends.series import Series
+from acutance.arguments import require_texts
 from acutance.curves import METRICS, Estimate
 from acutance.errors import NothingSelectedError, OptionError
 
@@ -130,6 +131,17 @@ class MeasurementTable:
         shown = dict.fromkeys(orientation for orientation, _ in self.columns)
         return tuple(f"images {orientation}" for orientation in shown)
 
+    def __str__(self) -> str:
+        """The table with its header and notes, as it is printed."""
+        columns = list(zip(self.header, *self.texts(), strict=True))
+        widths = [max(map(len, column)) for column in columns]
+        aligned = [
+            [f"{cell:{'<' if at < len(self.by) else '>'}{width}}" for cell in column]
+            for at, (column, width) in enumerate(zip(columns, widths, strict=True))
+        ]
+        lines = ["  ".join(line).rstrip() for line in zip(*aligned, strict=True)]
+        return "\n".join([*lines, "", *self.notes] if self.notes else lines)
+
     def texts(self) -> Iterator[tuple[str, ...]]:
         """The rows as text; where some cells are means, those of one measurement have a star."""
         sides, is_mixed = (
@@ -197,6 +209,7 @@ def table_by(
     OptionError
         If there is no such group or metric, or there are no rows.
     """
+    by, metrics = require_texts("by", by), require_texts("metrics", metrics)
     _require(rows, by, metrics)
     numbers = _with_printed(rows, [name for name in metrics if name in PRINTED])
     words = {name: _words(rows, name) for name in GROUPS}

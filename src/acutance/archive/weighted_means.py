@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import chdtri, ndtr, stdtr, stdtrit
 
+from acutance.arguments import require_all, require_floats, require_numbers
 from acutance.curves import Estimate
 from acutance.curves.estimate import normal_quantile
 from acutance.curves.grid import Floats
@@ -64,7 +65,14 @@ class WeightedMean:
     count: int
 
     def probability_below(self, limit: float) -> float:
-        """How probable it is that the mean is below `limit`; ``nan`` of one measurement."""
+        """How probable it is that the mean is below `limit`; ``nan`` of one measurement.
+
+        Raises
+        ------
+        OptionError
+            If it is no number.
+        """
+        require_numbers(limit=limit)
         if self.count < 2 or not self.mean.std > 0:
             return float("nan")
         away, degrees = limit - self.mean.value, self.count - 1
@@ -131,18 +139,20 @@ def weighted_mean(
     Raises
     ------
     OptionError
-        If there are none, or a value is not finite.
+        If there are none, a value is not finite, or there are others of deviations or groups.
     """
-    values = np.atleast_1d(np.asarray(value, float))
-    stds = np.broadcast_to(np.asarray(std, float), values.shape)
+    values = np.atleast_1d(require_floats("value", value))
+    stds = _as_many("std", std, values)
     if values.size == 0 or not np.isfinite(values).all():
         raise OptionError(
             f"{values.size} measurements, {int((~np.isfinite(values)).sum())} of them without a "
             "value: give at least one, and finite values"
         )
     variance = _stated(stds)
-    shared = np.broadcast_to(np.nan_to_num(np.asarray(systematic_std, float)), values.shape)
-    labels = [0] * values.size if group is None else list(group)
+    shared = np.nan_to_num(_as_many("systematic_std", systematic_std, values))
+    labels = [0] * values.size if group is None else list(require_all(Hashable, "group", group))
+    if len(labels) != values.size:
+        raise OptionError(f"{len(labels)} groups of {values.size} measurements: give one of each")
     if values.size == 1:
         own = float(np.sqrt(variance[0])) if np.isfinite(stds[0]) else np.nan
         mean = Estimate(float(values[0]), float(np.hypot(own, shared[0])), lowest)
@@ -204,6 +214,17 @@ def _scatter(value: Floats, variance: Floats, target: float) -> float:
         else:
             high = middle
     return high
+
+
+def _as_many(name: str, numbers: ArrayLike, values: Floats) -> Floats:
+    """Numbers that belong to values, one of each or one of all."""
+    found = require_floats(name, numbers)
+    if values.ndim != 1 or found.shape not in ((), (1,), values.shape):
+        raise OptionError(
+            f"{name} has the shape {found.shape}, the values {values.shape}: give a list of values "
+            "and as many deviations, or one"
+        )
+    return np.broadcast_to(found, values.shape)
 
 
 def _shared_std(weight: Floats, shared: Floats, labels: Sequence[Hashable]) -> float:

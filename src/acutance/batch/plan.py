@@ -12,6 +12,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
+from acutance.arguments import require_path
 from acutance.batch.path_text import path_as_text
 from acutance.batch.plan_options import faults_of_plan
 from acutance.errors import OptionError
@@ -218,6 +219,7 @@ def read_plan(path: str | os.PathLike[str]) -> BatchPlan:
     OptionError
         If it cannot be read, or holds what is not known: all faults are named at once.
     """
+    require_path(plan=path)
     name = Path(path)
     try:
         document = tomllib.loads(name.read_text(encoding="utf-8-sig"))

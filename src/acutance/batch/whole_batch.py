@@ -13,6 +13,7 @@ from typing import Any
 from acutance.archive import Archive, Entry
 from acutance.archive.connection import is_there
 from acutance.archive.outcomes import Outcome
+from acutance.arguments import require_path, require_paths
 from acutance.batch.entries import entry_of_facts, stated_entry
 from acutance.batch.image_list import (
     ImageFile,
@@ -162,6 +163,10 @@ def _wanted(
         plan = BatchPlan(images=(), targets={}, archive="")
     elif not isinstance(plan, BatchPlan):
         plan = read_plan(plan)
+    if not isinstance(targets, Mapping | None):
+        require_path(targets=targets)
+    if archive is not None:
+        require_path(archive=archive)
     given: dict[str, Any] = {
         "images": None if images is None else _texts(images),
         "targets": targets if isinstance(targets, Mapping | None) else os.fspath(targets),
@@ -181,7 +186,7 @@ def _wanted(
 def _texts(images: str | Sequence[str]) -> tuple[str, ...]:
     if isinstance(images, str | os.PathLike):
         return (os.fspath(images),)
-    return tuple(os.fspath(one) for one in images)
+    return tuple(os.fspath(one) for one in require_paths("images", images))
 
 
 def _bands(bands: Sequence[str | int]) -> tuple[str | int, ...]:

@@ -222,13 +222,13 @@ def export(
         str, typer.Argument(metavar="OUT", help="A file; of stac a folder that is new or empty.")
     ],
     to: Annotated[
-        str,
+        str | None,
         typer.Option(
             metavar="FORMAT",
             help="jsonl and parquet lose nothing, nor does stac of images with dates, which it "
-            "needs; csv has the numbers without curves.",
+            "needs; csv has the numbers without curves. Without it the ending of OUT says which.",
         ),
-    ],
+    ] = None,
     documents: Annotated[
         bool,
         typer.Option(
@@ -238,6 +238,8 @@ def export(
     selected: SelectionOptions,
 ) -> None:
     """Write measurements and rejections into a file, for other programs or other archives."""
+    if to is None:
+        to = _format_of(out)
     if documents and to != "csv":
         raise OptionError(f"--documents belongs to --to csv: {to} has them in any case")
     if to not in (*_ENDINGS, "stac"):
@@ -287,6 +289,18 @@ def info(place: PlaceArgument, as_json: JsonOption = False) -> None:
         f"{counted(found.runs, 'run')}; tables of version {found.schema_version}"
     )
     print_sensors(found.sensors)
+
+
+def _format_of(out: str) -> str:
+    """The format that a file's name says."""
+    ending = Path(out).suffix.lower()
+    for name, endings in _ENDINGS.items():
+        if ending in endings:
+            return name
+    raise OptionError(
+        f"OUT {out} names no format by its ending ({', '.join(sum(_ENDINGS.values(), ()))}): "
+        f"state it, --to {', '.join(_ENDINGS)} or stac"
+    )
 
 
 def _undated(entries: Iterable[Entry]) -> str:

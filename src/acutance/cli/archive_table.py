@@ -45,7 +45,6 @@ def table(
     """
     from acutance.archive import Archive
     from acutance.report import json_text
-    from acutance.report.text import align_columns
 
     groups = [name.strip() for name in by.split(",") if name.strip()]
     with Archive(place, read_only=True) as archive:
@@ -54,7 +53,4 @@ def table(
     if as_json:
         typer.echo(json_text(found.to_dict()))
         return
-    sides = "l" * len(found.by) + "r" * (len(found.header) - len(found.by))
-    typer.echo(align_columns([found.header, *found.texts()], sides, indent=""))
-    if found.notes:
-        typer.echo("\n" + "\n".join(found.notes))
+    typer.echo(str(found))

@@ -11,9 +11,10 @@ from numbers import Real
 from statistics import NormalDist
 from typing import Any, ClassVar
 
+from acutance.arguments import require_numbers
 from acutance.errors import OptionError
 
-__all__ = ["Estimate", "normal_quantile"]
+__all__ = ["Estimate", "normal_quantile", "require_bounds"]
 
 _MAX_DIGITS = 6
 _ONLY_WIDTH = re.compile(r"(.?[<>^])?\d*")
@@ -32,6 +33,17 @@ def normal_quantile(level: float) -> float:
     if not (isinstance(level, Real) and 0 < level < 1):
         raise OptionError(f"level is {level!r}: give a probability between 0 and 1, such as 0.95")
     return _quantile(float(level))
+
+
+def require_bounds(**bounds: float | None) -> None:
+    """Refuse bounds of a quantity that are neither numbers nor ``None``.
+
+    Raises
+    ------
+    OptionError
+        Names the bound.
+    """
+    require_numbers(**{name: bound for name, bound in bounds.items() if bound is not None})
 
 
 @lru_cache
@@ -63,7 +75,7 @@ class Estimate:
     Raises
     ------
     OptionError
-        If value or deviation is no number, or the deviation is negative.
+        If value, deviation or a bound is no number, or the deviation is negative.
 
     Examples
     --------
@@ -85,14 +97,16 @@ class Estimate:
     def __post_init__(self) -> None:
         # Thousands are made a second: one difference tells texts, None and negative deviations.
         try:
-            wrong = self.value - self.std > self.value
-        except TypeError:
+            wrong = bool(self.value - self.std > self.value)
+        except (TypeError, ValueError):
             wrong = True
         if wrong:
             raise OptionError(
                 f"an estimate of {self.value!r:.80} with a standard deviation of {self.std!r:.80}: "
                 "give two numbers, the deviation not below 0; nan where one does not exist"
             )
+        if self.lowest is not None or self.highest is not None:
+            require_bounds(lowest=self.lowest, highest=self.highest)
 
     # numpy then leaves sums and products with its own scalars to the methods below.
     __array_ufunc__: ClassVar[None] = None
@@ -120,7 +134,13 @@ class Estimate:
 
         Certain of a bound that the quantity cannot cross; ``nan`` where the value or its deviation
         does not exist.
+
+        Raises
+        ------
+        OptionError
+            If `limit` is no number.
         """
+        require_numbers(limit=limit)
         if math.isnan(self.value) or math.isnan(self.std):
             return math.nan
         if self.lowest is not None and limit <= self.lowest:
@@ -150,12 +170,25 @@ class Estimate:
 
     @classmethod
     def from_dict(cls, document: Mapping[str, Any]) -> Estimate:
-        """The estimate that `to_dict` wrote; ``nan`` where it has ``None``."""
-        value, std = (
-            math.nan if document[name] is None else float(document[name])
-            for name in ("value", "std")
-        )
-        return cls(value, std, document.get("lowest"), document.get("highest"))
+        """The estimate that `to_dict` wrote; ``nan`` where it has ``None``.
+
+        Raises
+        ------
+        OptionError
+            If it is no such document.
+        """
+        try:
+            value, std = (
+                math.nan if document[name] is None else float(document[name])
+                for name in ("value", "std")
+            )
+            bounds = document.get("lowest"), document.get("highest")
+        except (TypeError, ValueError, LookupError, AttributeError):
+            raise OptionError(
+                f"{document!r:.80} is no document of an estimate: give what to_dict() wrote, with "
+                "value and std"
+            ) from None
+        return cls(value, std, *bounds)
 
     def __float__(self) -> float:
         return float(self.value)

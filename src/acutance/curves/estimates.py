@@ -8,9 +8,11 @@ from typing import Any, overload
 
 import numpy as np
 
-from acutance.curves.estimate import Estimate, normal_quantile
+from acutance.arguments import require_floats
+from acutance.curves.estimate import Estimate, normal_quantile, require_bounds
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
+from acutance.errors import OptionError
 
 __all__ = ["Estimates", "estimates_of"]
 
@@ -37,11 +39,26 @@ class Estimates(ShortRepr):
     0.500 ± 0.020 2
     >>> found
     <Estimates: 0.900 ± 0.010, 0.500 ± 0.020>
+
+    Raises
+    ------
+    OptionError
+        If they hold something else than numbers, or have different shapes.
     """
 
     value: Floats
     std: Floats
     lowest: float | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("value", "std"):
+            object.__setattr__(self, name, require_floats(name, getattr(self, name)))
+        if self.value.ndim == 0 or self.value.shape != self.std.shape:
+            raise OptionError(
+                f"estimates of shape {self.value.shape} with deviations of shape {self.std.shape}: "
+                "give two arrays of one shape, or a single number to Estimate"
+            )
+        require_bounds(lowest=self.lowest)
 
     def interval(self, level: float = 0.95) -> tuple[Floats, Floats]:
         """Lower and upper ends of the intervals of probability `level`; see `Estimate.interval`.

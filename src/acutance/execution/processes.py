@@ -89,7 +89,11 @@ def run_tasks(
     ------
     WorkerError
         If one of the processes was killed.
+    OptionError
+        If it is no number of processes.
     """
+    if workers is not None:
+        require_workers(workers)
     used = min(workers or os.cpu_count() or 1, len(tasks))
     if used > 1:
         _run_in_processes(work, tasks, keep, used, chunk)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from acutance.arguments import require_types
 from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.geometry.angles import axis_difference
@@ -30,6 +31,11 @@ class Bars:
         Number of bars.
     length_px : float
         Length of the bars.
+
+    Raises
+    ------
+    OptionError
+        If one of them is no number.
     """
 
     row: float
@@ -38,6 +44,9 @@ class Bars:
     period_px: float
     count: int
     length_px: float
+
+    def __post_init__(self) -> None:
+        require_types(self)
 
     @property
     def freq_cpp(self) -> float:

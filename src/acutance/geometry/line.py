@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass, replace
 from typing import Literal
 
-import numpy as np
 from numpy.typing import ArrayLike
 
+from acutance.arguments import require_floats, require_numbers
 from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.geometry.angles import angle_to_grid, is_nearer_columns, wrap_direction
@@ -39,6 +39,11 @@ class Line:
         How much of the line was used.
     curvature_per_px : float, optional
         One over its radius, positive where it bends towards the bright side.
+
+    Raises
+    ------
+    OptionError
+        If one of them is no number.
     """
 
     row: float
@@ -48,6 +53,9 @@ class Line:
     offset_std_px: float = 0.0
     length_px: float = math.nan
     curvature_per_px: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_numbers(**vars(self))
 
     @property
     def normal(self) -> tuple[float, float]:
@@ -75,7 +83,8 @@ class Line:
     def distances(self, row: ArrayLike, col: ArrayLike) -> tuple[Floats, Floats]:
         """Signed distances along the normal and along the line: the one needs the other."""
         x, y = self.normal
-        right, down = np.asarray(col, float) - self.col, np.asarray(row, float) - self.row
+        right = require_floats("col", col) - self.col
+        down = require_floats("row", row) - self.row
         away, along = x * right + y * down, x * down - y * right
         if self.curvature_per_px != 0:
             away -= 0.5 * self.curvature_per_px * along**2

@@ -62,7 +62,7 @@ def require_axis(block: object, axis: str) -> None:
     ModelError
         Names the block and what was given.
     """
-    if axis not in ("across", "along"):
+    if not isinstance(axis, str) or axis not in ("across", "along"):
         raise ModelError(
             f'{type(block).__name__}: axis is {axis!r}, it has to be "across" or "along"'
         )

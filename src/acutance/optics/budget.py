@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from acutance.arguments import require_finite
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.errors import ModelError
 from acutance.optics.block import Block
 from acutance.optics.catalogue import BLOCKS, describe_block
-from acutance.optics.sensor import Sensor
+from acutance.optics.sensor import Sensor, require_sensor
 
 __all__ = ["Budget", "BudgetRow", "budget"]
 
@@ -84,10 +85,14 @@ def budget(sensor: Sensor, freq_cpp: float = NYQUIST_CPP) -> Budget:
 
     Raises
     ------
+    OptionError
+        If there is no sensor, or the frequency is no number.
     ModelError
-        If the frequency is below 0.
+        If the frequency is below 0, or not finite.
     """
-    if not freq_cpp >= 0:
+    require_sensor(sensor)
+    require_finite(freq_cpp=freq_cpp)
+    if freq_cpp < 0:
         raise ModelError(f"freq_cpp is {freq_cpp:g}, it has to be at least 0")
     rows = tuple(_row(block, freq_cpp) for block in sensor.blocks)
     across, along = abs(sensor.otf(freq_cpp, 0.0)), abs(sensor.otf(0.0, freq_cpp))

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, is_dataclass
 
+from acutance.errors import OptionError
 from acutance.optics.aberrations import Aberrations
 from acutance.optics.aperture import (
     Defocus,
@@ -124,9 +125,16 @@ def describe_block(block: Block) -> str:
     """A block with its parameters, as a reader writes it: ``Gaussian sigma 0.39 px``.
 
     Parameters that are ``None`` or no plain numbers or words are not mentioned.
+
+    Raises
+    ------
+    OptionError
+        If it is no block: one is a dataclass.
     """
+    if not is_dataclass(block) or isinstance(block, type):
+        raise OptionError(f"block is {block!r:.80}: give one, such as Gaussian(0.4)")
     words = [type(block).__name__]
-    for field in fields(block):  # type: ignore[arg-type]
+    for field in fields(block):
         value = getattr(block, field.name)
         if value is None:
             continue

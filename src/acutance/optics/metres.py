@@ -6,11 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from acutance.arguments import require_kind, require_numbers
 from acutance.curves import Response
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ModelError
-from acutance.optics.sensor import Sensor, spread_over_plane
+from acutance.optics.sensor import Sensor, require_sensor, spread_over_plane
 
 __all__ = ["GroundCurves", "on_the_ground", "psf_on_the_ground"]
 
@@ -61,9 +62,12 @@ def on_the_ground(response: Response) -> GroundCurves:
 
     Raises
     ------
+    OptionError
+        If it is no response.
     ModelError
         If the response has no GSD.
     """
+    require_kind(Response, response=response)
     gsd_m = response.gsd_m
     if gsd_m is None:
         raise ModelError("curves on the ground need the GSD: give gsd_m to the sensor or image")
@@ -103,9 +107,13 @@ def psf_on_the_ground(
 
     Raises
     ------
+    OptionError
+        If there is no sensor, or half width or step is no number.
     ModelError
         If the sensor has no GSD, or the grid is too coarse or too wide.
     """
+    require_sensor(sensor)
+    require_numbers(half_width_m=half_width_m, step_m=step_m)
     if sensor.pixel_m is None:
         raise ModelError("a PSF on the ground needs the GSD: give gsd_m to the sensor")
     row_m, col_m = sensor.pixel_m

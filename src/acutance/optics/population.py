@@ -26,6 +26,7 @@ from typing import Final
 
 import numpy as np
 
+from acutance.arguments import require_rng
 from acutance.curves.grid import Floats
 from acutance.errors import OptionError
 from acutance.optics.aberrations import Aberrations
@@ -68,8 +69,11 @@ def draw_sensor(family: str, rng: np.random.Generator) -> Sensor:
     ------
     OptionError
         If there is no such family.
+    ModelError
+        Without a random generator.
     """
-    if family not in FAMILIES:
+    rng = require_rng(rng, "a sensor by chance")
+    if not isinstance(family, str) or family not in FAMILIES:
         raise OptionError(
             f"there is no family of sensors {family!r}: choose one of {', '.join(FAMILIES)}"
         )

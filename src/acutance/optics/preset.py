@@ -35,7 +35,7 @@ def preset(name: str) -> Sensor:
         If there is no such sensor.
     """
     described = _files()
-    if name not in described:
+    if not isinstance(name, str) or name not in described:
         raise ModelError(f"there is no preset {name!r}, only {', '.join(described)}")
     return described[name].sensor
 

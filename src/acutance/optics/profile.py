@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from acutance.arguments import require_floats
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
 from acutance.optics.block import Transfer
@@ -95,14 +96,14 @@ class Profile:
 
     def esf(self, distance_px: ArrayLike) -> Floats:
         """ESF (0 to 1) at distances in pixels from the origin of the point spread function."""
-        s = np.asarray(distance_px, float) - self.centroid_px
+        s = require_floats("distance_px", distance_px) - self.centroid_px
         smooth = self.tail * (0.5 + np.arctan(s / TAIL_PX) / math.pi)
         smooth = smooth + (1 - self.tail) * 0.5 * (1 + np.tanh(s / (2 * CORE_PX)))
         return np.asarray(smooth + self._lookup(self.esf_rest, s))
 
     def lsf(self, distance_px: ArrayLike) -> Floats:
         """LSF (1/px) at distances in pixels from the origin of the point spread function."""
-        s = np.asarray(distance_px, float) - self.centroid_px
+        s = require_floats("distance_px", distance_px) - self.centroid_px
         lorentzian = TAIL_PX / (math.pi * (s**2 + TAIL_PX**2))
         logistic = (1 - np.tanh(s / (2 * CORE_PX)) ** 2) / (4 * CORE_PX)
         smooth = self.tail * lorentzian + (1 - self.tail) * logistic

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from acutance.arguments import require_floats, require_numbers, require_whole
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
-from acutance.optics.block import Block, Transfer
+from acutance.optics.block import Block, Transfer, require
 from acutance.optics.detector import Detector
 from acutance.optics.motion import Smear
-from acutance.optics.sensor import Sensor
+from acutance.optics.sensor import Sensor, require_sensor
 
 __all__ = ["RasterPsf", "numerical_psf"]
 
@@ -35,10 +36,27 @@ class RasterPsf:
     step_px : float
         Distance of two samples in pixels. The samples lie evenly about the origin, on whole
         multiples of the step where n (m) is odd and half way between where it is even.
+
+    Raises
+    ------
+    OptionError
+        If the samples are no numbers.
+    ModelError
+        If they are no matrix, or one is not finite; if the step is not above 0.
     """
 
     samples: Floats
     step_px: float
+
+    def __post_init__(self) -> None:
+        samples = require_floats("RasterPsf: samples", self.samples)
+        if samples.ndim != 2 or samples.size == 0 or not np.isfinite(samples).all():
+            raise ModelError(
+                f"RasterPsf: samples of shape {samples.shape}: give rows and columns of finite "
+                "numbers, whose sum is 1"
+            )
+        object.__setattr__(self, "samples", samples)
+        require(self, above=True, step_px=self.step_px)
 
     def otf(self, u: Floats, v: Floats) -> Transfer:
         u, v = np.asarray(u, float), np.asarray(v, float)
@@ -82,9 +100,14 @@ def numerical_psf(sensor: Sensor, *, subpixels: int = 20, trim_px: float = 5.0) 
 
     Raises
     ------
+    OptionError
+        If there is no sensor, or a number is none.
     ModelError
         If the grid is too coarse or the trim too wide or narrow.
     """
+    require_sensor(sensor)
+    require_whole(1, subpixels=subpixels)
+    require_numbers(trim_px=trim_px)
     if not (2 <= subpixels <= 100 and 1 <= trim_px <= 16):
         raise ModelError(
             f"a numerical PSF of {subpixels} samples per pixel trimmed to {trim_px:g} px was "

@@ -12,16 +12,23 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from acutance.arguments import require_floats, require_numbers
 from acutance.curves import Esf, Lsf, Mtf, Response
 from acutance.curves.direction import gsd_along, unit_vector
 from acutance.curves.grid import FREQ_CPP, Floats
-from acutance.errors import ModelError
+from acutance.errors import ModelError, OptionError
 from acutance.optics.aberrations import Aberrations
 from acutance.optics.aperture import Defocus, Diffraction
 from acutance.optics.block import Axis, Block, Transfer, has_otf
 from acutance.optics.profile import Profile
 
-__all__ = ["TRUTH_DISTANCE_PX", "Sensor", "normal_direction_deg", "spread_over_plane"]
+__all__ = [
+    "TRUTH_DISTANCE_PX",
+    "Sensor",
+    "normal_direction_deg",
+    "require_sensor",
+    "spread_over_plane",
+]
 
 TRUTH_DISTANCE_PX: Floats = np.linspace(-16.0, 16.0, 641)
 """Distances of a truth's spread functions: farther than measured ones, since nothing is noise."""
@@ -43,7 +50,7 @@ def normal_direction_deg(angle_deg: float, orientation: Axis) -> float:
         If the tilt is no finite number, or the orientation none of these.
     """
     _require_angle("angle_deg", angle_deg)
-    if orientation not in ("across", "along"):
+    if not isinstance(orientation, str) or orientation not in ("across", "along"):
         raise ModelError(f'orientation is {orientation!r}, it has to be "across" or "along"')
     return angle_deg + (90.0 if orientation == "along" else 0.0)
 
@@ -111,6 +118,12 @@ class Sensor:
     gsd_along_m : float, optional
         Distance from one row to the next in metres, where it differs from that between columns.
 
+    Raises
+    ------
+    ModelError
+        If there is no block, one has no OTF, a pupil is described twice, or a GSD is
+        not above 0.
+
     Examples
     --------
     >>> from acutance import optics
@@ -146,15 +159,27 @@ class Sensor:
         return (self.gsd_along_m or self.gsd_m), self.gsd_m
 
     def gsd_along_normal_m(self, normal_deg: float) -> float | None:
-        """Metres per pixel of distance along an edge's normal; ``None`` without a GSD."""
+        """Metres per pixel of distance along an edge's normal; ``None`` without a GSD.
+
+        Raises
+        ------
+        ModelError
+            If the direction is no finite number.
+        """
+        _require_angle("normal_deg", normal_deg)
         return None if self.pixel_m is None else gsd_along(self.pixel_m, normal_deg)
 
     def otf(self, u: ArrayLike, v: ArrayLike) -> Transfer:
         """OTF at frequencies `u` (across) and `v` (along) in cycles per pixel, 1 at zero.
 
         The arrays broadcast against each other. Real when every block is symmetric.
+
+        Raises
+        ------
+        OptionError
+            If a frequency is no number.
         """
-        u, v = np.asarray(u, float), np.asarray(v, float)
+        u, v = require_floats("u", u), require_floats("v", v)
         product: Transfer = np.ones(np.broadcast_shapes(u.shape, v.shape))
         for block in self.blocks:
             product = product * block.otf(u, v)
@@ -239,13 +264,38 @@ class Sensor:
             Places along either axis.
         psf : (n, n) array
             Light per square pixel at (row, column) distances; its integral over the plane is 1.
+
+        Raises
+        ------
+        OptionError
+            If half width or step is no number.
+        ModelError
+            If the grid is too coarse or too wide.
         """
+        require_numbers(half_width_px=half_width_px, step_px=step_px)
         if not (0 < step_px < 0.5 and step_px <= half_width_px < 32):
             raise ModelError(
                 f"a PSF of half width {half_width_px:g} px in steps of {step_px:g} px was "
                 "requested: the step has to be below 0.5, the half width between one step and 32"
             )
         return spread_over_plane(self.otf, half_width_px, step_px, 32.0)
+
+
+def require_sensor(sensor: Any) -> Sensor:
+    """The sensor of a caller.
+
+    Raises
+    ------
+    OptionError
+        If it is something else, such as a name.
+    """
+    if not isinstance(sensor, Sensor):
+        name = sensor if isinstance(sensor, str) else "generic-2005"
+        raise OptionError(
+            f"sensor is {sensor!r:.80}: give a Sensor, by its name acutance.optics.preset({name!r})"
+            ", of a TOML file acutance.optics.read_sensor(path)"
+        )
+    return sensor
 
 
 def spread_over_plane(

@@ -29,10 +29,11 @@ from typing import Any
 
 import numpy as np
 
-from acutance.errors import ModelError
+from acutance.arguments import require_kind, require_path, require_types
+from acutance.errors import ModelError, OptionError
 from acutance.optics.block import Block
 from acutance.optics.catalogue import BLOCKS
-from acutance.optics.sensor import Sensor
+from acutance.optics.sensor import Sensor, require_sensor
 
 __all__ = [
     "SensorFile",
@@ -66,12 +67,25 @@ class SensorFile:
         What it is and where its numbers are from.
     sources : tuple of str
         Where each block's numbers are from, in the sensor's order; empty where it is not known.
+
+    Raises
+    ------
+    OptionError
+        If a field is of another kind, or there are other numbers of sources and blocks.
     """
 
     sensor: Sensor
     name: str = ""
     description: str = ""
     sources: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        require_types(self)
+        if len(self.sources) not in (0, len(self.sensor.blocks)):
+            raise OptionError(
+                f"SensorFile: {len(self.sources)} sources of {len(self.sensor.blocks)} blocks: "
+                "give one of each block, '' where it is not known"
+            )
 
 
 def read_sensor(path: str | os.PathLike[str], gsd_m: float | None = None) -> Sensor:
@@ -90,13 +104,16 @@ def read_sensor(path: str | os.PathLike[str], gsd_m: float | None = None) -> Sen
 
     Raises
     ------
+    OptionError
+        If it is no path.
     ModelError
         If the file cannot be read, is no TOML, or describes no sensor; the message names the
         file, the block and the key.
     """
+    require_path(path=path)
     try:
         text = Path(path).read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise ModelError(
             f"the sensor file {path} cannot be read ({reason}): check its path"
@@ -115,18 +132,20 @@ def write_sensor(described: Sensor | SensorFile, path: str | os.PathLike[str]) -
 
     Raises
     ------
+    OptionError
+        If it is neither a sensor nor the description of one, or there is no path.
     ModelError
         If a block has no place in a file, or the file cannot be written.
     """
+    require_path(path=path)
     text = sensor_file_to_toml(
-        described if isinstance(described, SensorFile) else SensorFile(described)
+        described if isinstance(described, SensorFile) else SensorFile(require_sensor(described))
     )
     try:
         Path(path).write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise ModelError(
-            f"{path} cannot be written ({error.strerror}): choose another path"
-        ) from error
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise ModelError(f"{path} cannot be written ({reason}): choose another path") from error
 
 
 def sensor_file_from_toml(
@@ -145,9 +164,13 @@ def sensor_file_from_toml(
 
     Raises
     ------
+    OptionError
+        If it is no text.
     ModelError
         If it is no TOML or describes no sensor.
     """
+    if not isinstance(text, str):
+        raise OptionError(f"text is {text!r:.80}: give TOML, of a file by read_sensor(path)")
     try:
         table = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
@@ -180,9 +203,12 @@ def sensor_file_to_toml(described: SensorFile) -> str:
 
     Raises
     ------
+    OptionError
+        If it is no description of a sensor.
     ModelError
         If a block is none of `acutance.optics.BLOCKS`, or holds another system.
     """
+    require_kind(SensorFile, described=described)
     sensor = described.sensor
     lines = [
         f"{key} = {json.dumps(value, ensure_ascii=False)}"

@@ -166,7 +166,13 @@ def opened_dataset(path: str) -> Iterator[Any]:
 
 @contextmanager
 def read_in_our_words(path: str) -> Iterator[None]:
-    """What GDAL cannot read, as an error that tells what to do."""
+    """What GDAL cannot read, as an error that tells what to do.
+
+    Raises
+    ------
+    ImageError
+        If the file cannot be read in there: what GDAL says, in a sentence.
+    """
     try:
         yield
     except (RasterioError, CPLE_BaseError) as error:

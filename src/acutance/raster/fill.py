@@ -15,7 +15,10 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from acutance.arguments import require_floats, require_kind
 from acutance.curves.grid import Floats
+from acutance.errors import OptionError
+from acutance.raster.image import require_image
 from acutance.raster.region import Box
 
 if TYPE_CHECKING:
@@ -104,7 +107,17 @@ def find_fill(image: Image, box: Box, pixels: Floats) -> Fill | None:
     -------
     Fill or None
         `None` where there is none, or the image's values were stated to be data, all of them.
+
+    Raises
+    ------
+    OptionError
+        If an argument is of the wrong kind.
     """
+    require_image(image)
+    require_kind(Box, box=box)
+    pixels = require_floats("pixels", pixels)
+    if pixels.shape != box.shape:
+        raise OptionError(f"pixels have the shape {pixels.shape}: give those of {box}")
     if image.every_value_is_data or not _frequent_values(pixels):
         return None
     frame = box.grown(_CONTEXT_PX).intersection(Box.whole(image.shape)) or box
@@ -292,7 +305,13 @@ def value_far_off(pixels: Floats) -> tuple[float, int] | None:
 
     It may be fill inside an image, which no sharp border tells from dark or clipped ground: nothing
     is left out for it.
+
+    Raises
+    ------
+    OptionError
+        If they are no numbers.
     """
+    pixels = require_floats("pixels", pixels)
     finite = pixels[np.isfinite(pixels)]
     for value in (finite.min(initial=np.inf), finite.max(initial=-np.inf)):
         others = finite[finite != value]

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from acutance.arguments import require_floats, require_kind, require_numbers, require_types
 from acutance.curves.grid import Floats
 from acutance.errors import RegionError
 from acutance.geometry.angles import wrap_direction
@@ -48,16 +49,24 @@ class Geolocation:
         count from the outer corner of the first pixel, as rasterio's ``Affine`` has them.
     crs : str
         The coordinate reference system as rasterio understands it: "EPSG:32631", WKT.
+
+    Raises
+    ------
+    OptionError
+        If the transform is no tuple of 6 numbers, or the CRS no text.
     """
 
     transform: tuple[float, float, float, float, float, float]
     crs: str
 
+    def __post_init__(self) -> None:
+        require_types(self)
+
     def to_map(self, row: ArrayLike, col: ArrayLike) -> tuple[Floats, Floats]:
         """Map coordinates (x, y) of pixel positions; integers are pixel centres."""
         a, b, c, d, e, f = self.transform
-        along = np.asarray(col, dtype=np.float64) + 0.5
-        down = np.asarray(row, dtype=np.float64) + 0.5
+        along = require_floats("col", col) + 0.5
+        down = require_floats("row", row) + 0.5
         return a * along + b * down + c, d * along + e * down + f
 
     def from_map(self, x: ArrayLike, y: ArrayLike) -> tuple[Floats, Floats]:
@@ -75,8 +84,8 @@ class Geolocation:
                 f"the image's geotransform {self.transform} cannot be inverted: "
                 "give the region in pixels, ROW,COL,HEIGHT,WIDTH"
             )
-        east = np.asarray(x, dtype=np.float64) - c
-        north = np.asarray(y, dtype=np.float64) - f
+        east = require_floats("x", x) - c
+        north = require_floats("y", y) - f
         row = (a * north - d * east) / determinant - 0.5
         return row, (e * east - b * north) / determinant - 0.5
 
@@ -143,7 +152,13 @@ class Geolocation:
         -------
         Gsd or None
             ``None`` if the CRS defines no length, or the place has none.
+
+        Raises
+        ------
+        OptionError
+            If the place is no pair of numbers.
         """
+        require_numbers(row=row, col=col)
         on_map = self._gsd_on_map()
         on_ground = ground_gsd(self.to_lonlat, row, col)
         if on_map is None or on_ground is None:
@@ -223,7 +238,7 @@ def transform_points(
     from rasterio._err import CPLE_BaseError
     from rasterio.warp import transform
 
-    xs, ys = np.broadcast_arrays(np.asarray(x, np.float64), np.asarray(y, np.float64))
+    xs, ys = np.broadcast_arrays(require_floats("x", x), require_floats("y", y))
     source, target = _parse_crs(source_crs), _parse_crs(target_crs)
     try:
         moved = transform(source, target, xs.ravel().tolist(), ys.ravel().tolist())
@@ -261,6 +276,7 @@ def _parse_crs(crs: str) -> Any:
     from rasterio import Env
     from rasterio.crs import CRS
 
+    require_kind(str, crs=crs)
     try:
         # Outside of an Env GDAL prints its errors by itself.
         with Env():

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, replace
+from numbers import Real
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from acutance.arguments import require_optional
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ImageError, OptionError
@@ -32,7 +34,7 @@ from acutance.raster.pixels import (
 )
 from acutance.raster.region import Box
 
-__all__ = ["AlongTrack", "Image"]
+__all__ = ["AlongTrack", "Image", "require_image"]
 
 AlongTrack = Literal["x", "y"]
 """The image axis the satellite flew along: x is that of the columns' numbers, y of the rows'."""
@@ -85,6 +87,11 @@ class Image(ShortRepr):
         The nodata value that was stated when the file was opened.
     restored : str or None
         The filter that restored the band, by the tag that `acutance.restore` wrote.
+
+    Raises
+    ------
+    OptionError
+        If there is no such axis along track.
     """
 
     path: str | None
@@ -105,7 +112,7 @@ class Image(ShortRepr):
     restored: str | None = None
 
     def __post_init__(self) -> None:
-        if self.along_track not in ("x", "y"):
+        if not isinstance(self.along_track, str) or self.along_track not in ("x", "y"):
             raise OptionError(
                 f"along_track is {self.along_track!r}: it has to be 'y' (down the columns) or 'x' "
                 "(along the rows)"
@@ -113,7 +120,13 @@ class Image(ShortRepr):
 
     @classmethod
     def of(cls, image: Image | ArrayLike) -> Image:
-        """What stands for an image: itself, or an array as one (`from_array`)."""
+        """What stands for an image: itself, or an array as one (`from_array`).
+
+        Raises
+        ------
+        ImageError
+            If there is none, or it is no array that can be an image.
+        """
         if image is None:
             raise ImageError("the image is None: give an array, or open_image(path)")
         return image if isinstance(image, Image) else cls.from_array(image)
@@ -224,7 +237,10 @@ class Image(ShortRepr):
             If the box reaches beyond the image.
         ImageError
             If the file cannot be read there.
+        OptionError
+            If it is no box.
         """
+        require_optional(Box, box=box)
         window = Box.whole(self.shape) if box is None else box
         window.require_inside(self.shape)
         return self.source.read(window)
@@ -241,7 +257,13 @@ class Image(ShortRepr):
         -------
         Gsd or None
             ``None`` when it was not given and the image declares none.
+
+        Raises
+        ------
+        OptionError
+            If a place is no number.
         """
+        require_optional(Real, row=row, col=col)
         if self.own_gsd is not None:
             return self.own_gsd
         return self._located_gsd(row, col)
@@ -254,6 +276,7 @@ class Image(ShortRepr):
         row, col : float, optional
             As of `gsd`.
         """
+        require_optional(Real, row=row, col=col)
         if self.path is None and self.own_gsd is not None:
             return self.own_gsd
         return self.declared_gsd or self._located_gsd(row, col)
@@ -265,6 +288,20 @@ class Image(ShortRepr):
         at_row = (self.shape[0] - 1) / 2 if row is None else row
         at_col = (self.shape[1] - 1) / 2 if col is None else col
         return self.geolocation.gsd(at_row, at_col)
+
+
+def require_image(image: Any) -> None:
+    """Refuse what is no image, such as the name of a file.
+
+    Raises
+    ------
+    OptionError
+        Says how to make one.
+    """
+    if not isinstance(image, Image):
+        raise OptionError(
+            f"image is {image!r:.80}: give an Image, open_image(path) or Image.from_array(array)"
+        )
 
 
 def _linear_level(curve: Characteristic, level: float) -> float | None:

@@ -16,6 +16,7 @@ from typing import Protocol
 
 import numpy as np
 
+from acutance.arguments import require_floats, require_kind, require_numbers
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ImageError, OptionError
@@ -70,9 +71,17 @@ class SrgbCurve:
     ----------
     full_scale : float
         The stored value of white, which stays where it is.
+
+    Raises
+    ------
+    OptionError
+        If it is no number above 0.
     """
 
     full_scale: float
+
+    def __post_init__(self) -> None:
+        _require_scale(self.full_scale)
 
     @property
     def words(self) -> str:
@@ -109,6 +118,8 @@ class PowerCurve:
     full_scale: float
 
     def __post_init__(self) -> None:
+        require_numbers(gamma=self.gamma)
+        _require_scale(self.full_scale)
         low, high = _GAMMAS
         if not low <= self.gamma <= high:
             raise OptionError(
@@ -141,6 +152,7 @@ class LogCurve:
     decade: float
 
     def __post_init__(self) -> None:
+        require_numbers(decade=self.decade)
         if not (self.decade > 0 and math.isfinite(self.decade)):
             raise OptionError(
                 f"log:{self.decade:g} was asked for: state by how much the values rise for ten "
@@ -180,6 +192,16 @@ class TableCurve(ShortRepr):
     values: Floats
     light: Floats
 
+    def __post_init__(self) -> None:
+        require_kind(str, name=self.name)
+        for name in ("values", "light"):
+            object.__setattr__(self, name, require_floats(name, getattr(self, name)))
+        if self.values.ndim != 1 or self.values.shape != self.light.shape or not self.values.size:
+            raise OptionError(
+                f"a table of values of shape {self.values.shape} and light of shape "
+                f"{self.light.shape}: give two columns of one length"
+            )
+
     @classmethod
     def of_file(cls, path: str) -> TableCurve:
         """Read a table of two columns, comma, semicolon or blanks between; a header may be there.
@@ -189,6 +211,7 @@ class TableCurve(ShortRepr):
         OptionError
             If it is none, or not strictly rising.
         """
+        require_kind(str, path=path)
         rows = _rows(path)
         values, light = rows.T
         for column, title in ((values, "stored value"), (light, "light")):
@@ -281,6 +304,12 @@ def characteristic(asked: LinearizeLike, full_scale: float | None) -> Characteri
     if name.lower() == "log":
         return LogCurve(_number(asked, number) if number else math.log(10))
     return TableCurve.of_file(asked)
+
+
+def _require_scale(full_scale: float) -> None:
+    require_numbers(full_scale=full_scale)
+    if not 0 < full_scale < math.inf:
+        raise OptionError(f"full_scale is {full_scale:g}: give the value of white, above 0")
 
 
 def _number(asked: str, text: str) -> float:

@@ -5,13 +5,15 @@ from __future__ import annotations
 import operator
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from numbers import Integral
 from pathlib import Path
 from typing import Any
 
 from numpy.typing import NDArray
 
+from acutance.arguments import require_all
 from acutance.errors import ImageError, OptionError
 from acutance.raster.gsd import Gsd
 from acutance.raster.image import AlongTrack, Image
@@ -140,6 +142,10 @@ def open_bands(
     OptionError
         If no band is asked for, or one twice.
     """
+    if isinstance(bands, str | bytes) or not isinstance(bands, Iterable | None):
+        raise OptionError(f"bands are {bands!r:.80}: give a list of numbers, from 1, or of names")
+    if bands is not None:
+        bands = require_all((Integral, str), "bands", bands)
     numbers = _all_bands(open_unnamed(path)) if bands is None else _numbers(path, bands)
     if not numbers:
         raise OptionError("no band is asked for: give numbers, from 1, or leave bands out for all")

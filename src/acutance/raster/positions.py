@@ -7,12 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
+from acutance.arguments import require_path
 from acutance.curves.grid import Floats
 from acutance.errors import RegionError
 from acutance.raster.coordinates import PIXELS, crs_without_declaration, to_pixels
 from acutance.raster.geojson import declared_crs, load_geojson, points
 from acutance.raster.geolocation import LONLAT_CRS
-from acutance.raster.image import Image
+from acutance.raster.image import Image, require_image
 
 __all__ = ["read_positions"]
 
@@ -49,7 +50,11 @@ def read_positions(path: str, image: Image) -> Floats:
     ------
     RegionError
         If the file is neither, holds no places, or they cannot be related to the image.
+    OptionError
+        If it is no path, or there is no image.
     """
+    require_path(path=path)
+    require_image(image)
     name = Path(path)
     if not name.is_file():
         raise RegionError(f"{path}: there is no such file; positions come as .csv or .geojson")

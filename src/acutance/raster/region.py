@@ -7,10 +7,12 @@ from __future__ import annotations
 
 import operator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from acutance.arguments import require_all, require_kind, require_numbers
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import RegionError
@@ -62,8 +64,14 @@ class Box:
 
     @classmethod
     def whole(cls, shape: tuple[int, int]) -> Box:
-        """The box of a whole image of `shape` (rows, columns)."""
-        return cls(0, 0, shape[0], shape[1])
+        """The box of a whole image of `shape` (rows, columns).
+
+        Raises
+        ------
+        RegionError
+            If it is no pair of whole numbers, 1 or more.
+        """
+        return cls(0, 0, *_two(shape))
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -80,14 +88,28 @@ class Box:
         return self.row, self.col, self.height, self.width
 
     def intersection(self, other: Box) -> Box | None:
-        """The pixels both boxes hold; ``None`` when they share none."""
+        """The pixels both boxes hold; ``None`` when they share none.
+
+        Raises
+        ------
+        OptionError
+            If the other is no box.
+        """
+        require_kind(Box, other=other)
         row, col = max(self.row, other.row), max(self.col, other.col)
         height = min(self.row + self.height, other.row + other.height) - row
         width = min(self.col + self.width, other.col + other.width) - col
         return Box(row, col, height, width) if height > 0 and width > 0 else None
 
     def grown(self, margin_px: int) -> Box:
-        """The box with `margin_px` more pixels on every side (fewer when negative)."""
+        """The box with `margin_px` more pixels on every side (fewer when negative).
+
+        Raises
+        ------
+        OptionError, RegionError
+            If the margin is no whole number, or nothing is left.
+        """
+        require_numbers(margin_px=margin_px)
         return Box(
             self.row - margin_px,
             self.col - margin_px,
@@ -151,14 +173,24 @@ class Region(ShortRepr):
     name: str = ""
 
     def __post_init__(self) -> None:
+        require_kind(str, name=self.name)
+        require_numbers(margin_px=self.margin_px)
         if not 0.0 <= self.margin_px < np.inf:
             raise RegionError(f"the margin of a region is {self.margin_px:g} px: give 0 or more")
         object.__setattr__(self, "vertices", _outline(self.vertices))
-        object.__setattr__(self, "holes", tuple(_outline(hole) for hole in self.holes))
+        holes = require_all(object, "holes", self.holes)
+        object.__setattr__(self, "holes", tuple(_outline(hole) for hole in holes))
 
     @classmethod
     def from_box(cls, box: Box) -> Region:
-        """The outline of the pixels of a box, half a pixel outside their centres."""
+        """The outline of the pixels of a box, half a pixel outside their centres.
+
+        Raises
+        ------
+        OptionError
+            If it is no box.
+        """
+        require_kind(Box, box=box)
         top, left = box.row - 0.5, box.col - 0.5
         bottom, right = top + box.height, left + box.width
         return cls(np.array([[top, left], [top, right], [bottom, right], [bottom, left]]))
@@ -174,8 +206,9 @@ class Region(ShortRepr):
         Raises
         ------
         RegionError
-            If the region holds no pixel centre of the image.
+            If the region holds no pixel centre of the image, or the shape is none.
         """
+        shape = _two(shape)
         low = self.vertices.min(axis=0) - self.margin_px
         high = self.vertices.max(axis=0) + self.margin_px
         extent = (
@@ -214,7 +247,13 @@ class Region(ShortRepr):
         Returns
         -------
         (height, width) bool array
+
+        Raises
+        ------
+        OptionError
+            If it is no box.
         """
+        require_kind(Box, box=box)
         inside = _inside(self.vertices, box)
         for hole in self.holes:
             inside &= ~_inside(hole, box)
@@ -224,9 +263,25 @@ class Region(ShortRepr):
         return inside
 
 
+def _two(shape: Any) -> tuple[int, int]:
+    """Rows and columns of an image."""
+    try:
+        rows, cols = map(operator.index, shape)
+    except (TypeError, ValueError):
+        raise RegionError(
+            f"shape is {shape!r:.80}: it has to be two whole numbers, (rows, columns)"
+        ) from None
+    return rows, cols
+
+
 def _outline(vertices: ArrayLike) -> Floats:
     """A read-only copy of an outline, open, checked."""
-    corners = np.array(vertices, dtype=np.float64)
+    try:
+        corners = np.array(vertices, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise RegionError(
+            f"an outline is an array of (row, col) pairs, not {vertices!r:.80}: give numbers"
+        ) from None
     if corners.ndim != 2 or corners.shape[1] != 2:
         raise RegionError(
             f"an outline is an array of (row, col) pairs, shape (n, 2), not {corners.shape}"

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from acutance.arguments import require_kind
 from acutance.errors import RegionError
 from acutance.raster.coordinates import (
     PIXELS,
@@ -16,7 +17,7 @@ from acutance.raster.coordinates import (
 )
 from acutance.raster.geojson import declared_crs, load_geojson, polygons
 from acutance.raster.geolocation import LONLAT_CRS
-from acutance.raster.image import Image
+from acutance.raster.image import Image, require_image
 from acutance.raster.region import Box, Region
 
 __all__ = ["parse_features", "parse_roi", "parse_rois"]
@@ -98,7 +99,11 @@ def parse_rois(text: str, image: Image) -> dict[str, Region]:
     RegionError
         If the text is none of these, the file has no polygon, its coordinates cannot be related
         to the image, or no region holds any of the image's pixels.
+    OptionError
+        If it is no text, or there is no image.
     """
+    require_kind(str, text=text)
+    require_image(image)
     found = parse_features(text, image)
     return {name: one for name, one in found.items() if isinstance(one, Region)}
 

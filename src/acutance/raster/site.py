@@ -11,8 +11,9 @@ from importlib import resources
 
 import numpy as np
 
+from acutance.arguments import require_kind, require_numbers
 from acutance.errors import OptionError, RegionError
-from acutance.raster.image import Image
+from acutance.raster.image import Image, require_image
 from acutance.raster.region import Region
 
 __all__ = ["Site", "find_site", "site_region", "sites"]
@@ -98,6 +99,7 @@ def find_site(name: str) -> Site:
     OptionError
         If no site has the name, or several begin with it.
     """
+    require_kind(str, name=name)
     wanted = _plain(name)
     found = [
         site
@@ -141,8 +143,11 @@ def site_region(site: Site, image: Image, margin_m: float = 30.0) -> Region:
         If the coordinates of the site are not published, the image has no CRS or GSD, or the
         site's centre lies outside it.
     OptionError
-        If the margin is negative.
+        If the margin is negative, or an argument of the wrong kind.
     """
+    require_kind(Site, site=site)
+    require_image(image)
+    require_numbers(margin_m=margin_m)
     if not margin_m >= 0.0:
         raise OptionError(f"a margin of {margin_m:g} m means nothing: give 0 or more metres")
     if site.latitude_deg is None or site.longitude_deg is None:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from acutance.curves.short_repr import ShortRepr
 from acutance.raster.fill import blended_px, grown
+from acutance.raster.image import require_image
 from acutance.raster.region import Box
 
 if TYPE_CHECKING:
@@ -96,7 +97,13 @@ def find_swath_fill(image: Image) -> SwathFill | None:
     -------
     SwathFill or None
         `None` where there is none, or the image's values were stated to be data, all of them.
+
+    Raises
+    ------
+    OptionError
+        If it is no image.
     """
+    require_image(image)
     if image.every_value_is_data:
         return None
     for value in _values_at_the_border(image):

@@ -11,9 +11,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from acutance.errors import ImageError
+from acutance.arguments import require_optional, require_path
+from acutance.errors import ImageError, OptionError
+from acutance.raster.geolocation import Geolocation
 from acutance.raster.gsd import GSD_TAGS, Gsd
 from acutance.raster.partial_folder import partial_folder
+from acutance.raster.pixels import require_nodata
 from acutance.raster.region import Box
 
 __all__ = ["write_geotiff", "write_geotiff_tiles", "written_in_our_words"]
@@ -62,8 +65,10 @@ def write_geotiff(
     ImageError
         If the array is no image, or the file cannot be written.
     OptionError
-        If the GSD is not a positive number.
+        If the GSD is not a positive number, or an argument of the wrong kind.
     """
+    _require_place(path, transform, crs, nodata)
+    require_optional(Mapping, tags=tags)
     bands = _as_bands(np.asarray(array))
     place = (transform, crs, nodata, {**(tags or {}), **_gsd_tags(Gsd.given(gsd_m))})
     whole = Box.whole((bands.shape[1], bands.shape[2]))
@@ -105,11 +110,29 @@ def write_geotiff_tiles(
     ImageError
         If the parts do not make the image, or the file cannot be written.
     OptionError
-        If the GSD is not a positive number.
+        If the GSD is not a positive number, or an argument of the wrong kind.
     """
+    _require_place(path, transform, crs, nodata)
+    shape = Box.whole(shape).shape
+    if isinstance(tiles, str) or not hasattr(tiles, "__iter__"):
+        raise OptionError(f"tiles are {tiles!r:.80}: give pairs of a Box and its pixels")
+    try:
+        stored = np.dtype(dtype)
+    except TypeError:
+        raise OptionError(f"dtype is {dtype!r:.80}: give a type of numpy, numpy.float32") from None
     bands = ((box, _tile(box, pixels, shape)) for box, pixels in tiles)
     place = (transform, crs, nodata, _gsd_tags(Gsd.given(gsd_m)))
-    _write(Path(path), 1, shape, np.dtype(dtype), bands, *place)
+    _write(Path(path), 1, shape, stored, bands, *place)
+
+
+def _require_place(
+    path: Any, transform: Transform | None, crs: str | None, nodata: float | None
+) -> None:
+    require_path(path=path)
+    require_nodata(nodata)
+    require_optional(str, crs=crs)
+    if transform is not None:
+        Geolocation(transform, "EPSG:4326")
 
 
 def _write(
@@ -183,7 +206,13 @@ def _advice(dtype: np.dtype[Any]) -> str:
 
 @contextmanager
 def written_in_our_words(target: Path, advice: str) -> Iterator[None]:
-    """What cannot be written, as an error that tells what to do."""
+    """What cannot be written, as an error that tells what to do.
+
+    Raises
+    ------
+    ImageError
+        If the file cannot be written in there: what GDAL says, in a sentence.
+    """
     from rasterio._err import CPLE_BaseError
     from rasterio.errors import RasterioError
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from acutance.arguments import require_class
 from acutance.curves.metric_words import metric_words
 from acutance.report.comparison import Comparison
 from acutance.report.figures.comparison import comparison_figure
@@ -33,6 +34,7 @@ def bands_tables(found: BandScenes) -> tuple[Table, ...]:
     ----------
     found : BandScenes
     """
+    require_class("BandScenes", found=found)
     tables = [_numbers_table(found)]
     if found.shifts:
         tables.append(_shifts_table(found))
@@ -89,6 +91,7 @@ def bands_text(found: BandScenes, *, required: Required = ()) -> str:
     required : sequence of ToleranceLimit or str, optional
         Requirements that every band answers.
     """
+    require_class("BandScenes", found=found)
     first = found.scenes[found.first]
     lines = [
         f"band {found.label(name)}: {scene.verdict.word}: {scene.verdict.sentence}"
@@ -136,6 +139,7 @@ def bands_document(
     required : sequence of ToleranceLimit or str, optional
         Requirements that every band answers.
     """
+    require_class("BandScenes", found=found)
     return {
         "schema": "acutance/bands/1",
         "results": [
@@ -176,6 +180,7 @@ def bands_page(
     backdrops : mapping of str to (rows, cols) array, optional
         By band a quick look at what was scanned.
     """
+    require_class("BandScenes", found=found)
     shown = backdrops or {}
     names = tuple(f"band {found.label(name)}" for name in found.scenes)
     curves = Plate.of_figure(

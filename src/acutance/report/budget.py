@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from acutance.arguments import require_class
 from acutance.report.paper import INK, PALETTE, new_page, styled
 
 if TYPE_CHECKING:
@@ -20,12 +21,14 @@ __all__ = ["budget_document", "budget_figure", "budget_text", "sensor_document"]
 
 def sensor_document(sensor: Sensor) -> dict[str, Any]:
     """A sensor's GSD and blocks with their parameters, for JSON."""
+    require_class("Sensor", sensor=sensor)
     blocks = [{"block": type(one).__name__, **asdict(one)} for one in sensor.blocks]  # type: ignore[call-overload]
     return {"gsd_m": sensor.gsd_m, "gsd_along_m": sensor.gsd_along_m, "blocks": blocks}
 
 
 def budget_document(budget: Budget) -> dict[str, Any]:
     """The document ``acutance/budget/1``: every block's MTF at one frequency, and the whole."""
+    require_class("Budget", budget=budget)
     return {
         "schema": "acutance/budget/1",
         "freq_cpp": budget.freq_cpp,
@@ -48,6 +51,7 @@ def budget_document(budget: Budget) -> dict[str, Any]:
 
 def budget_text(budget: Budget) -> str:
     """A budget as a table for the terminal: one block a line, the whole below."""
+    require_class("Budget", budget=budget)
     metres = "" if budget.freq_cpm is None else _in_metres(budget)
     lines = [f"MTF at {budget.freq_cpp:g} cycles per pixel{metres}", ""]
     width = max(len(row.description) for row in budget.rows)
@@ -69,6 +73,7 @@ def _in_metres(budget: Budget) -> str:
 
 def budget_figure(budget: Budget) -> Figure:
     """Curves of every block and of the whole, across and along, up to 1 cycle per pixel."""
+    require_class("Budget", budget=budget)
     with styled():
         page = new_page(9.0, 4.6)
         panels = page.subplots(1, 2, sharey=True)

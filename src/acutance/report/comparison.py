@@ -8,6 +8,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from acutance.arguments import require_all
 from acutance.curves import Estimate, Response
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
@@ -89,8 +90,11 @@ def compare(
     Raises
     ------
     OptionError
-        If these are no measurements, or share no direction.
+        If these are no measurements, or share no direction; if the truth is none.
     """
+    measurements = require_all(object, "measurements", measurements)
+    if not isinstance(truth, Response | Mapping | None):
+        raise OptionError(f"truth is {truth!r:.80}: give a Response, or a dict by direction")
     plain = as_result(Comparison(tuple(measurements)))
     assert isinstance(plain, Comparison)
     by_direction = (

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from acutance.arguments import require_class
 from acutance.report.check_words import count_failed_checks, write_found
 from acutance.report.comparison import Comparison, Result, as_result
 from acutance.report.figures.bars import bars_panels
@@ -101,6 +102,7 @@ def panels(measurement: Measurement, *, backdrop: Floats | None = None) -> tuple
     backdrop : (rows, cols) array, optional
         Of a scene: see `draw`.
     """
+    require_class("Measurement", measurement=measurement)
     if measurement.kind in ("edge", "pulse"):
         return straight_panels(measurement)  # type: ignore[arg-type]
     if measurement.kind == "scene":
@@ -127,6 +129,7 @@ def panel_figure(panel: Panel) -> Figure:
     >>> mtf = panels(edge)[0]  # doctest: +SKIP
     >>> save_figure(panel_figure(mtf), f"{mtf.name}.pdf")  # doctest: +SKIP
     """
+    require_class("Panel", panel=panel)
     with styled():
         figure = new_page(*((WIDTH_IN, panel.height_in) if panel.wide else PANEL_IN))
         panel.draw(figure)

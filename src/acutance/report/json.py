@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from acutance.arguments import require_flags
 from acutance.report.check_words import common_verdict
 from acutance.report.comparison import Comparison, Result, as_result
 from acutance.report.requirements import Required, with_requirements
@@ -54,6 +55,7 @@ def document(
     required : sequence of ToleranceLimit or str, optional
         Requirements to be answered in "requirements": "mtf_nyquist >= 0.09".
     """
+    require_flags(covariance=covariance)
     found = as_result(result)
     if isinstance(found, TargetResult):
         own = _target_document(found, covariance)

@@ -49,7 +49,9 @@ def notebook_html(
         return _one_html(result)
     if isinstance(result, TargetResult):
         return _several_html(result.summary(), target_tables(result)[:SHOWN_TABLES])
-    return _several_html(result.summary(), bands_tables(result))
+    # What is no result at all is refused there.
+    tables = bands_tables(result)
+    return _several_html(result.summary(), tables)
 
 
 def _several_html(summary: str, tables: Sequence[Table]) -> str:

@@ -8,6 +8,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from acutance.arguments import require_choice, require_class, require_path, require_whole
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure, FigureBase, SubFigure
 
@@ -123,7 +125,15 @@ def figure_bytes(figure: Figure, ending: str, dpi: int = 150) -> bytes:
     """The figure as a file's content; `ending` is one of ``FIGURE_ENDINGS``.
 
     The same figure gives the same bytes: no dates are written.
+
+    Raises
+    ------
+    OptionError
+        If an argument is of the wrong kind, or there is no such ending.
     """
+    require_class("Figure", figure=figure)
+    require_choice(FIGURE_ENDINGS, ending=ending)
+    require_whole(1, dpi=dpi)
     dates: dict[str, dict[str, str | None]] = {
         ".svg": {"Date": None},
         ".pdf": {"CreationDate": None},
@@ -137,6 +147,13 @@ def figure_bytes(figure: Figure, ending: str, dpi: int = 150) -> bytes:
 
 
 def save_figure(figure: Figure, path: str | Path, dpi: int = 150) -> None:
-    """Write the figure as PNG, SVG or PDF, as the file's ending says."""
+    """Write the figure as PNG, SVG or PDF, as the file's ending says.
+
+    Raises
+    ------
+    OptionError
+        If an argument is of the wrong kind, or there is no such ending.
+    """
+    require_path(path=path)
     target = Path(path)
     target.write_bytes(figure_bytes(figure, target.suffix.lower(), dpi))

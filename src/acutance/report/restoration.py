@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from acutance.arguments import require_class
 from acutance.report.figures.restoration import restoration_panels
 from acutance.report.html import Headline, Section, Table, Verdict, render_page
 from acutance.report.labels import format_number, word_estimate, write_fixed
@@ -35,6 +36,7 @@ def restoration_text(filter: RestorationFilter) -> str:
     ----------
     filter : RestorationFilter
     """
+    require_class("RestorationFilter", filter=filter)
     tables = [one for one in restoration_tables(filter) if not one.page_only]
     notes = [f"note: {note}" for note in filter.notes]
     return "\n\n".join(
@@ -55,6 +57,7 @@ def restoration_page(filter: RestorationFilter, *, command: str | None = None) -
     command : str, optional
         The command line.
     """
+    require_class("RestorationFilter", filter=filter)
     plates = tuple(map(panel_plate, restoration_panels(filter)))
     sharpness, cost, trade, kernel = restoration_tables(filter)
     content = (
@@ -73,6 +76,7 @@ def proof_text(proof: RestorationProof) -> str:
     ----------
     proof : RestorationProof
     """
+    require_class("RestorationProof", proof=proof)
     refused = [f"{one}" for one in proof.rejected]
     verdict = f"The image {proof.sentence}."
     notes = [f"note: {note}" for note in proof.notes]
@@ -86,6 +90,7 @@ def niirs_text(found: Niirs) -> str:
     ----------
     found : Niirs
     """
+    require_class("Niirs", found=found)
     notes = [f"note: {note}" for note in found.notes]
     return "\n\n".join((table_text(niirs_table(found)), *(["\n".join(notes)] if notes else [])))
 

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import asdict, fields, replace
 from typing import TYPE_CHECKING, Any
 
+from acutance.arguments import require_class
 from acutance.report.budget import sensor_document
 
 if TYPE_CHECKING:
@@ -94,6 +95,7 @@ def target_truth_document(
 
 def scene_document(scene: Scene) -> dict[str, Any]:
     """The document ``acutance/scene/1``: regions and truths of all targets by name."""
+    require_class("Scene", scene=scene)
     edges = {
         edge.name: {
             "region": edge.region.tolist(),
@@ -137,6 +139,7 @@ def landscape_document(
     progress : function of (done, total), optional
         Called after each edge.
     """
+    require_class("LandscapeTruth", truth=truth)
     features = []
     for done, edge in enumerate(truth.edges, start=1):
         ring = edge.region(half_width_px)[:, ::-1].round(3).tolist()

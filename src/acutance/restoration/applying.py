@@ -15,6 +15,7 @@ from typing import Any, Literal, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from acutance.arguments import require_flags, require_path
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ImageError, NoDataError, OptionError
 from acutance.raster import Box, Image, SwathFill, find_swath_fill, open_image
@@ -33,7 +34,7 @@ from acutance.restoration.filter_match import (
     require_unrestored,
     restored_tags,
 )
-from acutance.restoration.restoration_filter import RestorationFilter
+from acutance.restoration.restoration_filter import RestorationFilter, require_filter
 from acutance.restoration.window_filter import PixelCounts, StoredType, reach_px, restored_window
 
 __all__ = ["RestoredImage", "restore", "restore_array"]
@@ -148,12 +149,9 @@ def restore(
     NoDataError
         If no pixel of a file has data; an array without any, the tile of an image, stays so.
     """
-    if not isinstance(filter, RestorationFilter):
-        raise OptionError(
-            f"the filter is a {type(filter).__name__}: give one of design_restoration, or "
-            "RestorationFilter.read(path)"
-        )
+    require_filter(filter)
     require_nodata(nodata)
+    require_flags(accept_mismatch=accept_mismatch)
     if isinstance(image, Image):
         raise OptionError(
             "the image is an Image, which is one band as it is measured: give its pixels, "
@@ -162,12 +160,15 @@ def restore(
     if not isinstance(image, str | os.PathLike):
         if out is not None:
             raise OptionError("out was given with an array: the result is returned")
+        if bands is not None:
+            raise OptionError("bands were given with an array, which is one band: leave them out")
         array, counts = restore_array(image, filter, nodata=nodata, saturation=saturation)
         if counts.clipped_low or counts.clipped_high or counts.fill:
             warnings.warn(f"restored {counts.in_words()}", stacklevel=2)
         return array
     if out is None:
         raise OptionError(f"{os.fspath(image)} is a file: name the one to be written (out)")
+    require_path(out=out)
     return _restore_file(
         os.fspath(image), os.fspath(out), filter, bands, nodata, saturation, accept_mismatch,
         progress,
@@ -181,7 +182,15 @@ def restore_array(
     nodata: float | None = None,
     saturation: float | None = None,
 ) -> tuple[NDArray[Any], PixelCounts]:
-    """An array, sharpened, and what became of its pixels; arguments are those of `restore`."""
+    """An array, sharpened, and what became of its pixels; arguments are those of `restore`.
+
+    Raises
+    ------
+    OptionError, ImageError
+        If an argument is of the wrong kind, or the image smaller than the kernel.
+    """
+    require_filter(filter)
+    require_nodata(nodata)
     array = np.asanyarray(image)
     require_image_array(array, "the array")
     raw, mask = np.ma.getdata(array), np.ma.getmaskarray(array)
@@ -231,7 +240,7 @@ def _restore_file(
     first = open_image(path, nodata=nodata)
     _require_other_file(path, out)
     if path.lower().endswith(".npy"):
-        return _restore_npy(path, out, filter, first, nodata, saturation)
+        return _restore_npy(out, filter, first, nodata, saturation)
     from acutance.raster.rewriting import StoredWindow, rewrite_image, stored_tags
 
     if not out.lower().endswith((".tif", ".tiff")):
@@ -279,7 +288,6 @@ def _restore_file(
 
 
 def _restore_npy(
-    path: str,
     out: str,
     filter: RestorationFilter,
     image: Image,

@@ -10,6 +10,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from acutance.arguments import require_flags
 from acutance.curves import Otf2d, Response
 from acutance.curves.grid import Floats
 from acutance.errors import OptionError
@@ -118,6 +119,7 @@ def design_restoration(
     >>> filter = ac.design_restoration(edges, noise_gain=2.0)  # doctest: +SKIP
     >>> print(filter.after.across.mtf_nyquist, filter.snr_after)  # doctest: +SKIP
     """
+    require_flags(isotropic=isotropic)
     knob = chosen_knob(noise_gain=noise_gain, mtf_nyquist=mtf_nyquist, overshoot=overshoot)
     chosen = _method(method, target, knob)
     _require_size(size)
@@ -132,8 +134,9 @@ def design_restoration(
 
 def _method(method: RestorationMethod | None, target: Any, knob: Knob | None) -> RestorationMethod:
     """The method, made sure that it goes with what else is asked for."""
-    chosen: RestorationMethod = method or ("wiener" if target is None else "target")
-    if chosen not in METHODS:
+    default: RestorationMethod = "wiener" if target is None else "target"
+    chosen = default if method is None else method
+    if not isinstance(chosen, str) or chosen not in METHODS:
         raise OptionError(f"method is {method!r}: it has to be one of {', '.join(METHODS)}")
     if (chosen == "target") != (target is not None):
         raise OptionError(

@@ -65,7 +65,13 @@ def _numbers(bands: Any) -> list[int]:
 def require_match(
     image: Image, filter: RestorationFilter, bands: Sequence[int], all_stated: bool
 ) -> None:
-    """Refuse pixels of another size, and another band, than those that were measured."""
+    """Refuse pixels of another size, and another band, than those that were measured.
+
+    Raises
+    ------
+    OptionError
+        If these are others; it says in what, and what to do.
+    """
     gsd, known = image.gsd(), filter.gsd_m
     if gsd is not None and known is not None:
         for own, measured in zip((gsd.row_m, gsd.col_m), known, strict=True):
@@ -85,7 +91,13 @@ def require_match(
 
 
 def require_unrestored(path: str, tags: dict[str, str]) -> None:
-    """Refuse an image whose tags say that a filter was applied to it."""
+    """Refuse an image whose tags say that a filter was applied to it.
+
+    Raises
+    ------
+    OptionError
+        If it was; it names the filter.
+    """
     if RESTORED_TAG in tags:
         raise OptionError(
             f"{path} was restored before ({tags[RESTORED_TAG]}): a second time would sharpen what "

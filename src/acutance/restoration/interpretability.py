@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from numbers import Integral
 from typing import Any
 
 from acutance.curves import Estimate
@@ -300,7 +301,7 @@ def _possible(name: str, given: Any) -> float:
 
 
 def _require(version: int, elevation_deg: float, noise_gain: float) -> None:
-    if version not in (3, 4, 5):
+    if not isinstance(version, Integral) or version not in (3, 4, 5):
         raise OptionError(f"version is {version!r}: there are versions 3, 4 and 5 of the GIQE")
     _possible("elevation_deg", elevation_deg)
     _possible("noise_gain", noise_gain)

@@ -18,9 +18,8 @@ from acutance.restoration.filtered_otf import FilteredOtf
 from acutance.restoration.kernel_family import KernelFamily
 from acutance.restoration.known_otf import KnownOtf
 
-__all__ = ["KNOBS", "Knob", "Turned", "chosen_knob", "weight_of", "worst_overshoot"]
+__all__ = ["Knob", "Turned", "chosen_knob", "weight_of", "worst_overshoot"]
 
-KNOBS = ("noise_gain", "mtf_nyquist", "overshoot")
 _WORDS = {
     "noise_gain": "a noise gain",
     "mtf_nyquist": "an MTF at Nyquist (mean of across and along)",

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from acutance.arguments import require_floats, require_path
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
@@ -23,7 +24,7 @@ from acutance.targets.check import VerdictWord
 from acutance.targets.document_fields import require_document
 from acutance.targets.recorded_direction import RecordedDirection
 
-__all__ = ["SCHEMA", "RestorationFilter", "Sharpness"]
+__all__ = ["SCHEMA", "RestorationFilter", "Sharpness", "require_filter"]
 
 SCHEMA = "acutance/restoration/1"
 
@@ -111,6 +112,7 @@ class RestorationFilter(ShortRepr):
         OptionError
             If there is no such file, or it holds no filter.
         """
+        require_path(path=path)
         try:
             document = json.loads(Path(path).read_text(encoding="utf-8-sig"))
         except OSError as error:
@@ -146,7 +148,7 @@ class RestorationFilter(ShortRepr):
 
     def otf(self, u_cpp: ArrayLike, v_cpp: ArrayLike) -> NDArray[np.complex128]:
         """Its transfer function at frequencies across the columns and down the rows, (...)."""
-        u, v = np.broadcast_arrays(np.asarray(u_cpp, float), np.asarray(v_cpp, float))
+        u, v = np.broadcast_arrays(require_floats("u_cpp", u_cpp), require_floats("v_cpp", v_cpp))
         return kernel_otf(self.kernel, u.ravel(), v.ravel()).reshape(u.shape)
 
     @cached_property
@@ -252,6 +254,21 @@ class RestorationFilter(ShortRepr):
 
 def _sharpness(document: Mapping[str, Any]) -> Sharpness:
     return Sharpness(*(RecordedDirection(document[name]) for name in ("across", "along")))
+
+
+def require_filter(filter: Any) -> None:
+    """Refuse what is no filter, such as the name of its file.
+
+    Raises
+    ------
+    OptionError
+        Says how to get one.
+    """
+    if not isinstance(filter, RestorationFilter):
+        raise OptionError(
+            f"the filter is a {type(filter).__name__}: give one of design_restoration, or "
+            "RestorationFilter.read(path)"
+        )
 
 
 def _require_kernel(kernel: Floats, noise_gain: float) -> None:

@@ -9,6 +9,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from acutance.arguments import require_numbers
 from acutance.curves.grid import Floats
 from acutance.errors import OptionError
 
@@ -43,6 +44,11 @@ class NaturalScene:
         areas with sharp borders.
     origin : str, optional
         "stated", or the image it was measured in.
+
+    Raises
+    ------
+    OptionError
+        If contrast or exponent makes no sense.
     """
 
     contrast_to_noise: float
@@ -50,6 +56,7 @@ class NaturalScene:
     origin: str = "stated"
 
     def __post_init__(self) -> None:
+        require_numbers(contrast_to_noise=self.contrast_to_noise, exponent=self.exponent)
         if not (0 < self.contrast_to_noise < math.inf and 0.5 <= self.exponent <= 6.0):
             raise OptionError(
                 f"a scene of contrast to noise {self.contrast_to_noise:g} and exponent "

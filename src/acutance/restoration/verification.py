@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from acutance.arguments import require_all, require_kind
 from acutance.curves import Estimate
 from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
@@ -15,7 +16,7 @@ from acutance.errors import AcutanceError, NoEdgeError
 from acutance.geometry.angles import axis_difference
 from acutance.raster import Box, Image, Region
 from acutance.restoration.proof import RestorationProof, VerifiedEdge
-from acutance.restoration.restoration_filter import RestorationFilter
+from acutance.restoration.restoration_filter import RestorationFilter, require_filter
 from acutance.scan import SceneEdges, edges_of_scene
 from acutance.targets.straight import StraightMeasurement, measure_edge
 from acutance.targets.uncertainty_budget import std_of_mean, systematic_share
@@ -64,7 +65,13 @@ def verify_restoration(
     ------
     NoEdgeError
         If no edge can be measured in both.
+    OptionError
+        If an argument is of the wrong kind.
     """
+    require_kind(Image, before=before, after=after)
+    require_filter(filter)
+    if not isinstance(regions, Mapping):
+        regions = require_all(object, "regions", regions)
     if not regions:
         found = _of_scene(before, after, filter, method)
         return RestorationProof(tuple(replace(one, method=method) for one in found))

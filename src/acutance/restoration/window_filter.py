@@ -182,7 +182,7 @@ def _as_stored(
         low = int(np.count_nonzero((sharp < bounds.min) & ~kept))
         high = int(np.count_nonzero((sharp > top) & ~kept))
         if low or high or kept.any():
-            np.clip(sharp, bounds.min, _not_above(top, sharp.dtype), out=sharp)
+            np.clip(sharp, bounds.min, _not_above(top), out=sharp)
     else:
         with np.errstate(over="ignore"):
             infinite = ~np.isfinite(sharp.astype(kind.dtype)) & ~kept
@@ -201,7 +201,7 @@ def _as_stored(
     return pixels, PixelCounts(sharp.size, 0, 0, low, high, moved)
 
 
-def _not_above(top: int, dtype: np.dtype[Any]) -> float:
+def _not_above(top: int) -> float:
     """The largest float that is no larger than an integer of 64 bits."""
     found = float(top)
     return float(np.nextafter(found, 0.0)) if int(found) > top else found

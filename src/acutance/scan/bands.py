@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from numbers import Integral
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from acutance.arguments import require_all
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import FewEdgesError, ImageError, NoEdgeError
 from acutance.raster import Gsd, Image, open_bands
@@ -236,7 +238,8 @@ def _bands(image: Any, bands: Sequence[int] | None) -> dict[str, Image]:
     else:
         _require_bands(image)
         numbered = _numbered([Image.of(one) for one in image])
-        wanted = list(numbered) if bands is None else [str(one) for one in bands]
+        asked = None if bands is None else require_all((Integral, str), "bands", bands)
+        wanted = list(numbered) if asked is None else [str(one) for one in asked]
         missing = [one for one in wanted if one not in numbered]
         if missing or not wanted:
             raise ImageError(
@@ -262,6 +265,10 @@ def _require_bands(image: Any) -> None:
     ImageError
         If it is one band, or the bands come last.
     """
+    if isinstance(image, type) or not isinstance(image, Iterable):
+        raise ImageError(
+            f"the image is {image!r:.80}: give the path of a file, or a sequence of its bands"
+        )
     shape = tuple(getattr(image, "shape", ()))
     if len(shape) == 2:
         raise ImageError(

@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from acutance.arguments import require_path
 from acutance.errors import OptionError
 from acutance.scan.scan_identity import difference
 from acutance.scan.window_edges import UsedEdge, WindowEdges
@@ -57,6 +58,7 @@ class KeptWindows:
     """
 
     def __init__(self, path: str | os.PathLike[str], identity: Mapping[str, Any]) -> None:
+        require_path(keep=path)
         self.path = Path(path)
         bands = len(identity["images"])
         try:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from acutance.arguments import require_types
 from acutance.curves import Estimate
 from acutance.errors import OptionError
 from acutance.scan.checks import SCENE_CHECKS
 from acutance.targets.check import Limits, require_limits
-from acutance.targets.options import require_types
 from acutance.targets.straight.stated_target import require_softness, stated_number
 
 __all__ = ["ScanOptions"]

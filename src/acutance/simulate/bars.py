@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from acutance.arguments import require_finite, require_floats, require_numbers
 from acutance.curves import Response
 from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
@@ -16,15 +17,9 @@ from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ModelError, OptionError
 from acutance.geometry.bar_group import Bars
 from acutance.geometry.line import Line, Orientation
-from acutance.optics.block import Transfer, require_count
-from acutance.optics.sensor import Sensor, normal_direction_deg
-from acutance.simulate.limits import (
-    require_finite,
-    require_floats,
-    require_numbers,
-    require_sensor,
-    require_shape,
-)
+from acutance.optics.block import Transfer, require, require_count
+from acutance.optics.sensor import Sensor, normal_direction_deg, require_sensor
+from acutance.simulate.limits import require_shape
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.scene import Patch, add_patches
 
@@ -46,6 +41,8 @@ class BarGroup(Bars):
 
     def __post_init__(self) -> None:
         require_count(self, MAX_BARS, count=self.count)
+        require(self, above=True, period_px=self.period_px, length_px=self.length_px)
+        require(self, -math.inf, row=self.row, col=self.col, normal_deg=self.normal_deg)
 
     def patches(self, contrast: float) -> list[Patch]:
         """The bars as rectangles of the given level above the background."""

@@ -9,20 +9,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from acutance.arguments import (
+    require_all,
+    require_finite,
+    require_numbers,
+    require_optional,
+    require_rng,
+    require_types,
+)
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
 from acutance.geometry.line import Line
-from acutance.optics.sensor import Sensor, normal_direction_deg
+from acutance.optics.sensor import Sensor, normal_direction_deg, require_sensor
 from acutance.simulate.bars import BarGroup, BarsTruth
 from acutance.simulate.edge import Truth
-from acutance.simulate.limits import (
-    MAX_SCENE_PIXELS,
-    require_finite,
-    require_kind,
-    require_rng,
-    require_sensor,
-    require_shape,
-)
+from acutance.simulate.limits import MAX_SCENE_PIXELS, require_shape
 from acutance.simulate.noise import Noise
 from acutance.simulate.points import PointsTruth, mirror_columns, peak_per_flux
 from acutance.simulate.pulse import PulseTruth
@@ -59,6 +60,11 @@ class Placed:
     mirrors : sequence of (row, col), optional
     mirror_peak : float, optional
         Signal that a mirror on the centre of a pixel adds to that pixel.
+
+    Raises
+    ------
+    OptionError
+        If one of them is of another kind.
     """
 
     bars: tuple[BarGroup, ...] = ()
@@ -67,6 +73,9 @@ class Placed:
     star_levels: tuple[float, float] = (200.0, 1200.0)
     mirrors: Sequence[tuple[float, float]] = ()
     mirror_peak: float = 1000.0
+
+    def __post_init__(self) -> None:
+        require_types(self)
 
 
 def render_site(
@@ -125,9 +134,10 @@ def render_site(
     require_sensor(sensor)
     require_shape(shape, MAX_SCENE_PIXELS)
     require_texture(texture_std)
-    require_finite(ground=ground)
-    require_kind(Placed, placed=placed)
-    require_kind(Noise, noise=noise)
+    require_finite(ground=ground, texture_grain_px=texture_grain_px)
+    require_all((EdgeTarps, PulseTarp), "tarps", tarps)
+    require_optional(Placed, placed=placed)
+    require_optional(Noise, noise=noise)
     others = Placed() if placed is None else placed
     image = np.zeros(shape, np.float32)
     if texture_std > 0:
@@ -190,9 +200,10 @@ def brookings(
 
     Raises
     ------
-    ModelError
-        If the field is turned too far.
+    ModelError, OptionError
+        If the field is turned too far, or an argument is of the wrong kind.
     """
+    require_numbers(turn_deg=turn_deg)
     if not 2 <= turn_deg <= 14:
         raise ModelError(f"the field is turned by {turn_deg:g} deg, it has to be 2 to 14")
     across, along = turn_deg, normal_direction_deg(turn_deg, "along")

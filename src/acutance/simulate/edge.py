@@ -8,20 +8,15 @@ from typing import Literal
 
 import numpy as np
 
+from acutance.arguments import require_finite, require_kind, require_numbers, require_optional
 from acutance.curves import HasResponse, Response
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
 from acutance.geometry.angles import wrap_direction
 from acutance.geometry.line import Line, Orientation
-from acutance.optics.sensor import Sensor, normal_direction_deg
+from acutance.optics.sensor import Sensor, normal_direction_deg, require_sensor
 from acutance.simulate.ground import GroundNoise
-from acutance.simulate.limits import (
-    require_finite,
-    require_kind,
-    require_numbers,
-    require_sensor,
-    require_shape,
-)
+from acutance.simulate.limits import require_shape
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.resample import Regrid, render_regridded
 
@@ -82,7 +77,16 @@ def render_edge(
     -------
     (rows, cols) array
         Exact to the accuracy of `Profile`.
+
+    Raises
+    ------
+    ModelError, OptionError
+        If the image is too large, or an argument of the wrong kind.
     """
+    require_sensor(sensor)
+    require_kind(Line, line=line)
+    require_shape(shape)
+    require_finite(dark=dark, bright=bright)
     rows, cols = np.indices(shape)
     profile = sensor.profile(line.normal_deg)
     distance = line.normal_distance(rows, cols)
@@ -149,11 +153,11 @@ def edge(
         pair, a seed instead of `rng`.
     """
     require_sensor(sensor)
-    if polarity not in ("rising", "falling"):
+    if not isinstance(polarity, str) or polarity not in ("rising", "falling"):
         raise ModelError(f'polarity is {polarity!r}, it has to be "rising" or "falling"')
     require_shape(shape)
-    require_kind(Regrid, regrid=regrid)
-    require_kind(GroundNoise, ground_noise=ground_noise)
+    require_optional(Regrid, regrid=regrid)
+    require_optional(GroundNoise, ground_noise=ground_noise)
     require_finite(dark=dark, bright=bright, offset_px=offset_px)
     if not dark < bright:
         raise ModelError(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cache
-from typing import Final, Literal
+from typing import Final, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -49,6 +49,11 @@ class Galaxy:
         Minor over major axis, 0.1 to 1.
     turn_deg : float
         Direction of the major axis, from the column axis towards the row axis.
+
+    Raises
+    ------
+    ModelError
+        If a number or the profile makes no sense.
     """
 
     row: float
@@ -62,7 +67,8 @@ class Galaxy:
     def __post_init__(self) -> None:
         require(self, above=True, half_light_px=self.half_light_px)
         require(self, 0.1, 1.0, axis_ratio=self.axis_ratio)
-        if self.profile not in ("exponential", "de-vaucouleurs"):
+        require(self, -math.inf, row=self.row, col=self.col, flux=self.flux, turn_deg=self.turn_deg)
+        if not isinstance(self.profile, str) or self.profile not in get_args(Profile):
             raise ModelError(
                 f'Galaxy: profile is {self.profile!r}, it has to be "exponential" or '
                 '"de-vaucouleurs"'

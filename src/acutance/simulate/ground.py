@@ -4,16 +4,23 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
+from acutance.arguments import (
+    require_choice,
+    require_floats,
+    require_rng,
+    require_types,
+    require_whole,
+)
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
 from acutance.optics.block import Transfer, require, require_count
-from acutance.optics.sensor import Sensor
-from acutance.simulate.limits import require_rng
+from acutance.optics.sensor import Sensor, require_sensor
+from acutance.simulate.limits import MAX_SCENE_PIXELS, require_shape
 
 __all__ = ["GroundNoise", "alias_bands", "render_raster"]
 
@@ -28,7 +35,14 @@ MAX_SUBPIXELS = 60_000_000
 
 
 def alias_bands(sensor: Sensor) -> int:
-    """Number of alias bands on either side of the first that still carry light, 1 to 8."""
+    """Number of alias bands on either side of the first that still carry light, 1 to 8.
+
+    Raises
+    ------
+    OptionError
+        If there is no sensor.
+    """
+    require_sensor(sensor)
     freq = np.arange(0.5, MAX_BANDS + 0.5, 0.02)
     strength = np.maximum(np.abs(sensor.otf(freq, 0.0)), np.abs(sensor.otf(0.0, freq)))
     return max(1, math.ceil(float(np.max(freq[strength > NEGLIGIBLE], initial=0.5)) - 0.5))
@@ -64,10 +78,16 @@ def render_raster(
 
     Raises
     ------
+    OptionError
+        If an argument is of the wrong kind.
     ModelError
         If the ground does not fill whole pixels.
     """
-    if subpixels < 1 or ground.ndim != 2 or any(size % subpixels for size in ground.shape):
+    require_sensor(sensor)
+    require_whole(1, subpixels=subpixels)
+    require_choice(get_args(Drawn), drawn=drawn)
+    ground = require_floats("ground", ground)
+    if ground.ndim != 2 or any(size % subpixels for size in ground.shape):
         raise ModelError(
             f"ground of shape {ground.shape} does not fill whole pixels of {subpixels} by "
             f"{subpixels} squares: give sizes that are multiples of {subpixels}"
@@ -118,7 +138,14 @@ class GroundNoise:
     grains : tuple of int, optional
         Sides of the squares in sub-pixels, 1 to 20 unless given.
     subpixels : int, optional
-        Sub-pixels in a pixel.
+        Sub-pixels in a pixel, 1 to 100.
+
+    Raises
+    ------
+    ModelError
+        If a number makes no sense, or there is no grain.
+    OptionError
+        If the grains are no whole numbers.
     """
 
     variance: float = 100.0
@@ -128,7 +155,8 @@ class GroundNoise:
     def __post_init__(self) -> None:
         require(self, variance=self.variance)
         require_count(self, 100, subpixels=self.subpixels)
-        if not self.grains or min(self.grains) < 1:
+        require_types(self)
+        if not len(self.grains) or min(self.grains) < 1:
             raise ModelError(f"grains are {self.grains}, there have to be some, all 1 or more")
 
     @property
@@ -141,7 +169,13 @@ class GroundNoise:
 
         Every grain is white noise through a square: its power spectrum times the squared MTF,
         summed over all frequencies that a sub-pixel grid holds.
+
+        Raises
+        ------
+        OptionError
+            If there is no sensor.
         """
+        require_sensor(sensor)
         freq = (np.arange(-640, 640) + 0.5) / 64
         power = np.abs(sensor.otf(freq, freq[:, None])) ** 2
         total = 0.0
@@ -166,9 +200,12 @@ class GroundNoise:
 
         Raises
         ------
-        ModelError
-            If the field would have more than 60 million squares.
+        ModelError, OptionError
+            If the field would have more than 60 million squares, the shape is none, or no
+            generator was handed in.
         """
+        require_shape(shape, MAX_SCENE_PIXELS)
+        rng = require_rng(rng, "ground noise")
         height, width = (size * self.subpixels for size in shape)
         if height * width > MAX_SUBPIXELS:
             raise ModelError(
@@ -204,8 +241,10 @@ class GroundNoise:
         Raises
         ------
         ModelError, OptionError
-            If the field is too large, or no generator was handed in.
+            If the field is too large, there is no sensor, or no generator was handed in.
         """
+        require_sensor(sensor)
+        require_shape(shape)
         drawn = require_rng(rng, "ground noise")
         wide = (shape[0] + 2 * MARGIN_PX, shape[1] + 2 * MARGIN_PX)
         image = render_raster(sensor, self.field(wide, drawn), self.subpixels)

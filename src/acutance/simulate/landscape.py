@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from acutance.arguments import require_optional, require_rng
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.optics.sensor import Sensor
@@ -16,7 +17,7 @@ from acutance.simulate.landscape_layout import Waves, draw_layout
 from acutance.simulate.landscape_options import LandscapeOptions
 from acutance.simulate.landscape_pixels import Canvas, draw_tiles
 from acutance.simulate.landscape_survey import edges_of
-from acutance.simulate.limits import MAX_SCENE_PIXELS, require_kind, require_rng, require_shape
+from acutance.simulate.limits import MAX_SCENE_PIXELS, require_shape
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.parcel import Parcel
 from acutance.simulate.sensor_field import SensorField, sensor_at
@@ -141,7 +142,7 @@ def landscape_tiles(
     >>> write_geotiff_tiles("land.tif", (10000, 10000), tiles)  # doctest: +SKIP
     """
     require_shape(shape, MAX_SCENE_PIXELS)
-    require_kind(LandscapeOptions, options=options)
+    require_optional(LandscapeOptions, options=options)
     drawn = require_rng(rng, "a landscape")
     # What is no sensor is refused before the layout is drawn, which takes a while.
     sensor_at(sensor, 0.0, 0.0)

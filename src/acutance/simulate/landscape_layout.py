@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from acutance.arguments import require_floats, require_types
 from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
@@ -48,9 +49,12 @@ class Waves:
     level: float
     waves: tuple[tuple[float, float, float, float], ...]
 
+    def __post_init__(self) -> None:
+        require_types(self)
+
     def at(self, rows: ArrayLike, cols: ArrayLike) -> Floats:
         """Level at places, which broadcast against each other."""
-        down, right = np.asarray(rows, float), np.asarray(cols, float)
+        down, right = require_floats("rows", rows), require_floats("cols", cols)
         found = np.full(np.broadcast_shapes(down.shape, right.shape), self.level)
         for amplitude, u, v, phase in self.waves:
             # The product of two short vectors, for rows and columns of an image.

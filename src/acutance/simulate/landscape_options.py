@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, fields
 
+from acutance.arguments import require_numbers
 from acutance.errors import ModelError
 from acutance.optics.block import require
-from acutance.simulate.limits import require_numbers
 
 __all__ = ["LandscapeOptions", "Range"]
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from acutance.arguments import require_floats, require_numbers, require_optional, require_rng
 from acutance.curves.grid import Floats
-from acutance.errors import ModelError
+from acutance.errors import ModelError, OptionError
 from acutance.optics.block import require
-from acutance.simulate.limits import require_kind, require_numbers, require_rng
 
 __all__ = ["Noise", "noise_of_snr"]
 
@@ -44,7 +44,14 @@ class Noise:
             require(self, -math.inf, saturation=self.saturation)
 
     def std(self, signal: Floats) -> Floats:
-        """Standard deviation of the random part where the signal is `signal`, same shape."""
+        """Standard deviation of the random part where the signal is `signal`, same shape.
+
+        Raises
+        ------
+        OptionError
+            If the signal holds no numbers.
+        """
+        signal = require_floats("signal", signal)
         return np.sqrt(self.read**2 + self.shot_gain * np.maximum(signal, 0.0))
 
     def added_to(self, image: Floats, rng: np.random.Generator | None) -> Floats:
@@ -53,8 +60,11 @@ class Noise:
         Raises
         ------
         ModelError, OptionError
-            If something is random and no generator was handed in.
+            If something is random and no generator was handed in, or the image holds no numbers.
         """
+        image = np.asanyarray(image)
+        if image.dtype.kind not in "biuf":
+            raise OptionError(f"image is {image!r:.80}: it has to hold numbers")
         noisy = image
         if self.read > 0 or self.shot_gain > 0:
             drawn = require_rng(rng, "noise").standard_normal(image.shape)
@@ -89,7 +99,7 @@ def noise_of_snr(
     OptionError
         If one of them is of the wrong kind.
     """
-    require_kind(Noise, noise=noise)
+    require_optional(Noise, noise=noise)
     if noise is not None and darkest is not None:
         _require_darkest(noise, darkest)
     if snr is None:

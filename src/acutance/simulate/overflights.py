@@ -9,11 +9,11 @@ from datetime import datetime
 import numpy as np
 from numpy.typing import NDArray
 
-from acutance.errors import ModelError
+from acutance.arguments import require_all, require_finite, require_rng
+from acutance.errors import ModelError, OptionError
 from acutance.optics.aperture import Gaussian
-from acutance.optics.sensor import Sensor
+from acutance.optics.sensor import Sensor, require_sensor
 from acutance.simulate.campaign import render_site
-from acutance.simulate.limits import require_finite, require_sensor
 from acutance.simulate.tarps import EdgeTarps, PulseTarp
 
 __all__ = ["Overflight", "overflights"]
@@ -81,8 +81,15 @@ def overflights(
     ModelError
         If a deviation is negative or not finite.
     OptionError
-        If `sensor_on` gives no sensor.
+        If an argument is of the wrong kind, or `sensor_on` gives no sensor.
     """
+    if not callable(sensor_on):
+        raise OptionError(
+            f"sensor_on is {sensor_on!r:.80}: give a function of a date, lambda day: sensor"
+        )
+    require_all((EdgeTarps, PulseTarp), "tarps", tarps)
+    require_all(datetime, "dates", dates)
+    rng = require_rng(rng, "an overflight")
     require_finite(noise_std=noise_std, air_px=air_px, pointing_px=pointing_px)
     if min(noise_std, air_px, pointing_px) < 0:
         raise ModelError(

@@ -10,6 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
 
+from acutance.arguments import (
+    require_finite,
+    require_kind,
+    require_optional,
+    require_place,
+    require_rng,
+    require_whole,
+)
 from acutance.curves import Response
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
@@ -17,15 +25,9 @@ from acutance.errors import ModelError
 from acutance.geometry.line import Orientation
 from acutance.optics import Rescaled, Sensor
 from acutance.optics.block import Block, Transfer, require
+from acutance.optics.sensor import require_sensor
 from acutance.simulate.ground import alias_bands
-from acutance.simulate.limits import (
-    require_finite,
-    require_kind,
-    require_place,
-    require_rng,
-    require_sensor,
-    require_shape,
-)
+from acutance.simulate.limits import MAX_SCENE_PIXELS, require_shape
 from acutance.simulate.native_grid import NativeGrid
 from acutance.simulate.noise import Noise, noise_of_snr
 
@@ -206,9 +208,9 @@ def pair(
         require_sensor(one)
     require_shape(shape)
     drawn = require_rng(rng, "a landscape")
-    require_kind(PairGround, ground=ground)
-    require_kind(NativeGrid, native=native)
-    require_kind(Noise, noise_low=noise_low, noise_high=noise_high)
+    require_optional(PairGround, ground=ground)
+    require_optional(NativeGrid, native=native)
+    require_optional(Noise, noise_low=noise_low, noise_high=noise_high)
     require_place(shift_px=shift_px)
     require_finite(ratio=ratio, gain=gain, offset=offset, dark=dark, bright=bright)
     _require_contrast_and_overlap(gain, dark, bright, shift_px, shape)
@@ -325,7 +327,16 @@ def pair_ground(
     Returns
     -------
     (rows, cols) array
+
+    Raises
+    ------
+    ModelError, OptionError
+        If the shape is too large, or an argument of the wrong kind.
     """
+    require_shape(shape, MAX_SCENE_PIXELS)
+    require_whole(1, period=period)
+    require_kind(PairGround, ground=ground)
+    rng = require_rng(rng, "ground of a pair")
     rows = np.arange(shape[0])[:, None] / max(shape)
     cols = np.arange(shape[1])[None, :] / max(shape)
     cell = np.zeros(shape, np.int64)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import ndtr
 
+from acutance.arguments import require_choice, require_whole
 from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
@@ -56,6 +57,7 @@ class Border:
         require(self, above=True, length_px=self.length_px)
         require(self, softness_px=self.softness_px)
         require(self, -1.0, 1.0, curvature_per_px=self.curvature_per_px)
+        require(self, -math.inf, row=self.row, col=self.col, normal_deg=self.normal_deg)
 
     def along_and_across(self, rows: ArrayLike, cols: ArrayLike) -> tuple[Floats, Floats]:
         """Distances of places along the tangent at the middle, and from the border (inside > 0)."""
@@ -123,6 +125,9 @@ class SideStrip:
 
     def __post_init__(self) -> None:
         require(self, softness_px=self.softness_px)
+        require(self, -math.inf, near_px=self.near_px, far_px=self.far_px, contrast=self.contrast)
+        require_choice(get_args(StripKind), kind=self.kind)
+        require_whole(0, border=self.border)
         if not self.near_px < self.far_px:
             raise ModelError(
                 f"a strip from {self.near_px:g} to {self.far_px:g} px has no width: the first "

@@ -14,10 +14,12 @@ from functools import lru_cache
 import numpy as np
 from scipy import fft
 
+from acutance.arguments import require_all, require_whole
 from acutance.curves.grid import Floats
 from acutance.optics.block import Transfer
-from acutance.optics.sensor import Sensor
+from acutance.optics.sensor import Sensor, require_sensor
 from acutance.raster import Box
+from acutance.simulate.limits import require_shape
 from acutance.simulate.parcel import Parcel
 
 __all__ = ["fine_samples", "reach_of_light", "render_parcels", "window_of_light"]
@@ -83,7 +85,16 @@ def render_parcels(
         In image units; 0 is the ground.
     covers : (2, rows, cols) array
         Share of a pixel that parcels cover, and that share times the parcels' textures.
+
+    Raises
+    ------
+    ModelError, OptionError
+        If the image is too large, or an argument of the wrong kind.
     """
+    require_sensor(sensor)
+    require_shape(shape)
+    require_all(Parcel, "parcels", parcels)
+    require_whole(1, subpixels=subpixels)
     size = (shape[0] * subpixels, shape[1] * subpixels)
     blur_px = _BLUR_SAMPLES / subpixels
     ground, covers = np.zeros(size), np.zeros((2, *shape))

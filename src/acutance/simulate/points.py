@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from acutance.arguments import require_finite, require_floats, require_place, require_whole
 from acutance.curves import Response
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ModelError
 from acutance.geometry.line import Orientation
-from acutance.optics.sensor import Sensor
-from acutance.simulate.limits import require_finite, require_floats, require_sensor, require_shape
+from acutance.optics.sensor import Sensor, require_sensor
+from acutance.simulate.limits import require_shape
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.scene import Point, render_patches
 
@@ -102,7 +103,15 @@ def mirror_columns(
     Returns
     -------
     (count * columns, 2) array
+
+    Raises
+    ------
+    OptionError, ModelError
+        If a number is none, or not finite; if there is no mirror.
     """
+    require_place(first=first, step=step)
+    require_whole(1, count=count, columns=columns)
+    require_finite(apart_px=apart_px)
     down = np.arange(count)[:, None] * np.array(step)
     right = np.arange(columns)[:, None, None] * np.array([0.0, apart_px])
     return np.asarray((np.array(first) + right + down).reshape(-1, 2))
@@ -122,7 +131,15 @@ def mirror_square(first: tuple[float, float], *, side: int = 4, pitch_px: float 
     Returns
     -------
     (side * side, 2) array
+
+    Raises
+    ------
+    OptionError, ModelError
+        If a number is none, or not finite; if there is no mirror.
     """
+    require_place(first=first)
+    require_whole(1, side=side)
+    require_finite(pitch_px=pitch_px)
     rows, cols = np.indices((side, side)) * pitch_px
     return np.column_stack([rows.ravel() + first[0], cols.ravel() + first[1]])
 

@@ -9,14 +9,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from acutance.arguments import require_finite, require_kind, require_optional
 from acutance.curves import HasResponse, Response
 from acutance.curves.grid import Floats, crossing
 from acutance.errors import ModelError
 from acutance.geometry.line import Line, Orientation
-from acutance.optics.sensor import Sensor
+from acutance.optics.sensor import Sensor, require_sensor
 from acutance.simulate.edge import line_through_centre
 from acutance.simulate.ground import GroundNoise
-from acutance.simulate.limits import require_finite, require_kind, require_sensor, require_shape
+from acutance.simulate.limits import require_shape
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.resample import Regrid, render_regridded
 from acutance.simulate.scene import Patch, render_patches
@@ -156,7 +157,18 @@ def render_pulse(
     -------
     (rows, cols) array
         Exact to the accuracy of `Profile`; with ends, to that of `render_patches`.
+
+    Raises
+    ------
+    ModelError, OptionError
+        If the image is too large, or an argument of the wrong kind.
     """
+    require_sensor(sensor)
+    require_kind(Line, line=line)
+    require_shape(shape)
+    require_finite(width_px=width_px, left=left, level=level, right=right)
+    if length_px is not None:
+        require_finite(length_px=length_px)
     profile = sensor.profile(line.normal_deg)
     half = 0.5 * width_px
     s = line.normal_distance(*np.indices(shape)) + profile.half_px
@@ -243,8 +255,8 @@ def pulse(
     require_sensor(sensor)
     behind = dark if right_dark is None else right_dark
     require_shape(shape)
-    require_kind(Regrid, regrid=regrid)
-    require_kind(GroundNoise, ground_noise=ground_noise)
+    require_optional(Regrid, regrid=regrid)
+    require_optional(GroundNoise, ground_noise=ground_noise)
     require_finite(dark=dark, bright=bright, right_dark=behind, width_px=width_px)
     require_finite(length_px=0.0 if length_px is None else length_px, offset_px=offset_px)
     _require_pulse(width_px, length_px, (dark, bright, behind))

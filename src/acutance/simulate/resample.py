@@ -10,7 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.ndimage import map_coordinates
 
+from acutance.arguments import require_finite, require_floats
 from acutance.curves.grid import Floats
+from acutance.errors import OptionError
 from acutance.geometry.line import Line
 from acutance.optics import Resampling, Rescaled, Sensor, Shift
 from acutance.optics.block import require
@@ -52,11 +54,20 @@ def resample(
 
     Raises
     ------
+    OptionError
+        If an argument is of the wrong kind.
     ModelError
         If there is no such kernel.
     """
     require_kernel("resample", kernel)
-    row_at, col_at = np.broadcast_arrays(np.asarray(rows, float), np.asarray(cols, float))
+    require_finite(a=a)
+    image = require_floats("image", image)
+    if image.ndim != 2 or image.size == 0:
+        raise OptionError(f"image has the shape {image.shape}: give rows and columns of pixels")
+    places = [require_floats("rows", rows), require_floats("cols", cols)]
+    if not all(np.isfinite(one).all() for one in places):
+        raise OptionError("a place in rows or cols is not finite: leave it out")
+    row_at, col_at = np.broadcast_arrays(*places)
     if kernel == "spline":
         return np.asarray(map_coordinates(image, [row_at, col_at], order=3, mode="nearest"))
     top, left = np.floor(row_at).astype(int), np.floor(col_at).astype(int)
@@ -100,6 +111,7 @@ class Regrid:
         require(self, 0.5, 2.0, scale=self.scale)
         require(self, -1e6, 1e6, shift_row_px=self.shift_row_px, shift_col_px=self.shift_col_px)
         require_kernel("Regrid", self.kernel)
+        require(self, -math.inf, a=self.a)
 
     def system(self, sensor: Sensor) -> Sensor:
         """The sensor and the resampling as one system, in new pixels."""

@@ -6,18 +6,28 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from numbers import Integral
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from acutance.arguments import (
+    require_all,
+    require_finite,
+    require_floats,
+    require_kind,
+    require_rng,
+    require_whole,
+)
 from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
-from acutance.errors import ModelError
+from acutance.errors import ModelError, OptionError
 from acutance.geometry.line import Line
 from acutance.optics.block import Transfer, require
-from acutance.optics.sensor import Sensor
+from acutance.optics.sensor import Sensor, require_sensor
 from acutance.simulate.ground import alias_bands
+from acutance.simulate.limits import MAX_SCENE_PIXELS, require_shape
 
 __all__ = [
     "Patch",
@@ -109,7 +119,16 @@ class Strip:
 
 
 def render_strip(sensor: Sensor, strip: Strip, shape: tuple[int, int]) -> Floats:
-    """A strip above dark ground: the difference of two ESFs, exact; (rows, cols) array."""
+    """A strip above dark ground: the difference of two ESFs, exact; (rows, cols) array.
+
+    Raises
+    ------
+    ModelError, OptionError
+        If the image is too large, or an argument of the wrong kind.
+    """
+    require_sensor(sensor)
+    require_kind(Strip, strip=strip)
+    require_shape(shape, MAX_SCENE_PIXELS)
     middle = Line(strip.row, strip.col, strip.normal_deg)
     distance = middle.normal_distance(*np.indices(shape))
     esf = sensor.profile(strip.normal_deg).esf
@@ -186,7 +205,16 @@ def render_patches(
     Returns
     -------
     (rows, cols) array
+
+    Raises
+    ------
+    ModelError, OptionError
+        If the image is too large, or an argument of the wrong kind.
     """
+    require_sensor(sensor)
+    require_shape(shape)
+    require_whole(0, margin_px=margin_px)
+    _require_shapes(patches)
     rows, cols = (size + margin_px for size in shape)
     folded = np.zeros((rows, cols // 2 + 1), complex)
     for u, v, otf in _bands(sensor, rows, cols):
@@ -197,6 +225,14 @@ def render_patches(
             ground += patch.spectrum(u, v) * (phase_v * phase_u)
         folded += ground * otf
     return np.ascontiguousarray(np.fft.irfft2(folded, (rows, cols))[: shape[0], : shape[1]])
+
+
+def _require_shapes(patches: Any) -> None:
+    for number, one in enumerate(require_all(object, "patches", patches), start=1):
+        if isinstance(one, type) or not callable(getattr(one, "spectrum", None)):
+            raise OptionError(
+                f"number {number} of patches is {one!r:.80}: give Patch(...) or Point(...)"
+            )
 
 
 @lru_cache(maxsize=4)
@@ -225,7 +261,17 @@ def add_patches(
     patches : sequence of Patch or Point
     reach_px : int, optional
         Room around them, in pixels.
+
+    Raises
+    ------
+    OptionError
+        If an argument is of the wrong kind.
     """
+    require_canvas(image)
+    require_all((Patch, Point), "patches", patches)
+    require_whole(0, reach_px=reach_px)
+    if not patches:
+        return
     extents = [
         0.0 if isinstance(one, Point) else 0.5 * math.hypot(one.width_px, one.height_px)
         for one in patches
@@ -254,11 +300,37 @@ def stamp(image: NDArray[Any], part: Floats, top: int, left: int) -> None:
     part : (m, n) array
     top, left : int
         Where the first pixel of `part` goes.
+
+    Raises
+    ------
+    OptionError
+        If an argument is of the wrong kind.
     """
+    require_canvas(image)
+    part = require_floats("part", part)
+    if part.ndim != 2:
+        raise OptionError(f"part has the shape {part.shape}: give rows and columns of numbers")
+    for name, place in (("top", top), ("left", left)):
+        if not isinstance(place, Integral):
+            raise OptionError(f"{name} is {place!r:.80}: it has to be a whole number of pixels")
     first, last = max(top, 0), min(top + part.shape[0], image.shape[0])
     begin, end = max(left, 0), min(left + part.shape[1], image.shape[1])
     if first < last and begin < end:
         image[first:last, begin:end] += part[first - top : last - top, begin - left : end - left]
+
+
+def require_canvas(image: Any) -> None:
+    """Refuse what cannot be drawn on: anything but an array of rows and columns of floats.
+
+    Raises
+    ------
+    OptionError
+        Names what was given.
+    """
+    if not isinstance(image, np.ndarray) or image.ndim != 2 or image.dtype.kind != "f":
+        raise OptionError(
+            f"image is {image!r:.80}: give rows and columns to draw on, numpy.zeros(shape)"
+        )
 
 
 def texture(
@@ -280,8 +352,17 @@ def texture(
     Returns
     -------
     (rows, cols) array
+
+    Raises
+    ------
+    ModelError, OptionError
+        If the image is too large, the grain too fine, or an argument of the wrong kind.
     """
-    if not grain_px >= 0.5:
+    require_sensor(sensor)
+    require_shape(shape, MAX_SCENE_PIXELS)
+    require_finite(std=std, grain_px=grain_px)
+    rng = require_rng(rng, "texture")
+    if grain_px < 0.5:
         raise ModelError(f"texture: grain_px is {grain_px:g}, it has to be at least 0.5")
     if max(shape) > _TILE_PX:
         return _wide_texture(sensor, shape, std, grain_px, rng)

@@ -6,9 +6,11 @@ import math
 from dataclasses import dataclass, replace
 from typing import Protocol
 
+from acutance.arguments import require_numbers
 from acutance.optics import Gaussian, Sensor
 from acutance.optics.block import require
-from acutance.simulate.limits import require_sensor, require_shape
+from acutance.optics.sensor import require_sensor
+from acutance.simulate.limits import require_shape
 
 __all__ = ["SensorField", "SoftCorners", "TiltedFocus", "sensor_at"]
 
@@ -42,11 +44,13 @@ class SoftCorners:
     corner_px: float
 
     def __post_init__(self) -> None:
+        require_sensor(self.sensor)
         require_shape(self.shape, 10**12)
         require(self, corner_px=self.corner_px)
 
     def at(self, row: float, col: float) -> Sensor:
         """The sensor at a place in pixels."""
+        require_numbers(row=row, col=col)
         half_rows, half_cols = (0.5 * (size - 1) for size in self.shape)
         away = math.hypot(row - half_rows, col - half_cols)
         added = self.corner_px * away / max(math.hypot(half_rows, half_cols), 0.5)
@@ -80,12 +84,14 @@ class TiltedFocus:
     focus_col: float = 0.0
 
     def __post_init__(self) -> None:
+        require_sensor(self.sensor)
         require_shape(self.shape, 10**12)
         require(self, across_px=self.across_px, along_px=self.along_px)
         require(self, 0.0, self.shape[1] - 1.0, focus_col=self.focus_col)
 
     def at(self, row: float, col: float) -> Sensor:
         """The sensor at a place in pixels: the same one in every row."""
+        require_numbers(row=row, col=col)
         farthest = max(self.focus_col, self.shape[1] - 1 - self.focus_col, 0.5)
         share = abs(col - self.focus_col) / farthest
         return _blurred(self.sensor, self.across_px * share, self.along_px * share)

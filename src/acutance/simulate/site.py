@@ -9,23 +9,23 @@ from typing import Literal
 
 import numpy as np
 
+from acutance.arguments import (
+    require_all,
+    require_finite,
+    require_numbers,
+    require_place,
+    require_rng,
+)
 from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ModelError
 from acutance.geometry.angles import wrap_direction
 from acutance.geometry.line import Line
-from acutance.optics.sensor import Sensor
+from acutance.optics.sensor import Sensor, require_sensor
 from acutance.simulate.bars import BarsTruth
 from acutance.simulate.edge import Truth
-from acutance.simulate.limits import (
-    require_finite,
-    require_numbers,
-    require_place,
-    require_rng,
-    require_sensor,
-    require_shape,
-)
+from acutance.simulate.limits import require_shape
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.points import PointsTruth
 from acutance.simulate.pulse import PulseTruth
@@ -160,7 +160,8 @@ def checkerboard(
     require_place(centre=centre)
     require_numbers(tile_px=tile_px, turn_deg=turn_deg)
     require_texture(texture_std)
-    require_finite(dark=dark, bright=bright, ground=ground)
+    require_finite(dark=dark, bright=bright, ground=ground, texture_grain_px=texture_grain_px)
+    require_all(Strip, "strips", strips)
     _require_room(shape, tile_px, turn_deg, centre)
     board = _tiles(centre, tile_px, turn_deg, dark - ground, bright - ground)
     image = ground + render_patches(sensor, board, shape)

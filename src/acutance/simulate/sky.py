@@ -8,13 +8,14 @@ from typing import Any, Final
 
 import numpy as np
 
+from acutance.arguments import require_finite, require_numbers, require_optional, require_rng
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 from acutance.optics.block import require
-from acutance.optics.sensor import Sensor
+from acutance.optics.sensor import Sensor, require_sensor
 from acutance.simulate.galaxy import Galaxy
-from acutance.simulate.limits import require_finite, require_rng, require_sensor, require_shape
+from acutance.simulate.limits import require_shape
 from acutance.simulate.noise import Noise
 from acutance.simulate.points import PointsTruth, peak_per_flux
 from acutance.simulate.scene import Point, render_patches, stamp
@@ -44,6 +45,11 @@ class SkyField:
         Half-light radii of galaxies, log-uniform in this range.
     bulges : float
         Share of the galaxies with a de Vaucouleurs profile; the others are exponential discs.
+
+    Raises
+    ------
+    ModelError, OptionError
+        If a number makes no sense, or a range does not rise.
     """
 
     stars: int = 30
@@ -61,7 +67,15 @@ class SkyField:
             cosmic_rays=self.cosmic_rays, hot_pixels=self.hot_pixels,
         )  # fmt: skip
         require(self, 0.0, 1.0, bulges=self.bulges)
-        for name, (low, high) in (("snr", self.snr), ("half_light_px", self.half_light_px)):
+        for name in ("snr", "half_light_px"):
+            try:
+                low, high = getattr(self, name)
+            except (TypeError, ValueError):
+                raise OptionError(
+                    f"SkyField: {name} is {getattr(self, name)!r:.80}: give two numbers, the least "
+                    "and the largest"
+                ) from None
+            require_numbers(**{f"the least {name}": low, f"the largest {name}": high})
             if not 0 < low <= high < math.inf:
                 raise OptionError(
                     f"SkyField: {name} is {low:g} to {high:g}, it has to rise from above 0"
@@ -141,6 +155,8 @@ def sky(
         If a number makes no sense, or an argument is of the wrong kind.
     """
     require_sensor(sensor)
+    require_optional(SkyField, field=field)
+    require_optional(Noise, noise=noise)
     field = SkyField() if field is None else field
     noise = Noise(read=10.0) if noise is None else noise
     require_finite(background=background)

@@ -9,17 +9,18 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from acutance.arguments import require_finite, require_floats, require_kind, require_place
 from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ModelError
 from acutance.geometry.angles import direction_difference, wrap_direction
 from acutance.optics.block import require, require_count
-from acutance.optics.sensor import Sensor
+from acutance.optics.sensor import Sensor, require_sensor
 from acutance.simulate.ground import MAX_SUBPIXELS, render_raster
-from acutance.simulate.limits import require_finite, require_place, require_sensor, require_shape
+from acutance.simulate.limits import require_shape
 from acutance.simulate.noise import Noise, noise_of_snr
-from acutance.simulate.scene import stamp
+from acutance.simulate.scene import require_canvas, stamp
 
 __all__ = ["Star", "StarTruth", "Wave", "add_star", "star"]
 
@@ -50,6 +51,11 @@ class Star:
         360 for a full star, less for a fan.
     finest_cpp : float
         Inside the radius where the spokes reach this frequency the star is uniform grey.
+
+    Raises
+    ------
+    ModelError
+        If a number or the wave makes no sense, or the grey centre reaches the rim.
     """
 
     row: float
@@ -67,7 +73,7 @@ class Star:
         require(self, above=True, radius_px=self.radius_px)
         require(self, 0.0, 2.5, above=True, finest_cpp=self.finest_cpp)
         require(self, 0.0, 360.0, above=True, sweep_deg=self.sweep_deg)
-        if self.wave not in ("sine", "square"):
+        if not isinstance(self.wave, str) or self.wave not in ("sine", "square"):
             raise ModelError(f'Star: wave is {self.wave!r}, it has to be "sine" or "square"')
         if not self.inner_px < self.radius_px:
             raise ModelError(
@@ -82,7 +88,7 @@ class Star:
 
     def freq_cpp(self, radius_px: ArrayLike) -> Floats:
         """Frequency round the centre at a radius: ``k / (2 pi r)``."""
-        return np.asarray(self.cycles / (2 * math.pi * np.asarray(radius_px, float)))
+        return np.asarray(self.cycles / (2 * math.pi * require_floats("radius_px", radius_px)))
 
     def radius_at_px(self, freq_cpp: ArrayLike) -> Floats:
         """Radius at which the spokes have a frequency."""
@@ -156,11 +162,12 @@ class StarTruth(ShortRepr):
         directions_deg : (k,) array_like, optional
             Directions of the normals; those of all spokes unless given.
         """
+        freq = require_floats("freq_cpp", freq_cpp)
         if directions_deg is None:
             middle = (np.arange(360) + 0.5) / 360 * self.star.sweep_deg
             # The normal of a spoke is a quarter turn from the spoke.
             directions_deg = self.star.start_deg + middle + 90.0
-        freq, (x, y) = np.asarray(freq_cpp, float), unit_vector(np.asarray(directions_deg, float))
+        x, y = unit_vector(np.atleast_1d(require_floats("directions_deg", directions_deg)))
         u, v = np.multiply.outer(freq, x), np.multiply.outer(freq, y)
         return np.asarray(np.mean(np.abs(self.sensor.otf(u, v)), axis=-1))
 
@@ -207,7 +214,12 @@ def add_star(
     ------
     ModelError
         If the star is too large to be drawn, or a level is not finite.
+    OptionError
+        If an argument is of the wrong kind.
     """
+    require_canvas(image)
+    require_sensor(sensor)
+    require_kind(Star, star=star)
     require_finite(mean=mean, amplitude=amplitude)
     side = 2 * (math.ceil(star.radius_px) + ROOM_PX)
     if (side * SUBPIXELS) ** 2 > MAX_SUBPIXELS:

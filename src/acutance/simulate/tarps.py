@@ -7,11 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from acutance.arguments import require_all, require_kind, require_numbers, require_whole
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
 from acutance.geometry.line import Line
 from acutance.optics.block import require
 from acutance.optics.sensor import normal_direction_deg
+from acutance.simulate.limits import MAX_SCENE_PIXELS, require_shape
 from acutance.simulate.scene import Patch
 
 __all__ = ["EdgeTarps", "PulseTarp", "tarp_patches", "tarp_region", "tarp_rows"]
@@ -46,6 +48,7 @@ class EdgeTarps:
     bright: float
 
     def __post_init__(self) -> None:
+        require_kind(str, name=self.name)
         require(self, 8.0, side_px=self.side_px)
         require(self, -math.inf, row=self.row, col=self.col, normal_deg=self.normal_deg)
         require(self, -math.inf, dark=self.dark, bright=self.bright)
@@ -77,6 +80,7 @@ class PulseTarp:
     level: float
 
     def __post_init__(self) -> None:
+        require_kind(str, name=self.name)
         require(self, above=True, width_px=self.width_px, length_px=self.length_px)
         require(self, -math.inf, row=self.row, col=self.col, normal_deg=self.normal_deg)
         require(self, -math.inf, level=self.level)
@@ -103,14 +107,19 @@ def tarp_rows(
 
     Raises
     ------
+    OptionError
+        If an argument is of the wrong kind.
     ModelError
         If there are none, they are turned too far, or each would have less than 90 by 90 pixels.
     """
+    require_shape(shape, MAX_SCENE_PIXELS)
+    require_numbers(count=count, turn_deg=turn_deg)
     if count < 1 or not abs(turn_deg) <= 45:
         raise ModelError(
             f"{count} targets turned by {turn_deg:g} deg were requested: there has to be 1 or "
             "more, turned by -45 to 45"
         )
+    require_whole(1, count=count)
     cols = max(1, round(math.sqrt(count * shape[1] / shape[0])))
     rows = math.ceil(count / cols)
     pitch = (shape[0] / rows, shape[1] / cols)
@@ -133,7 +142,14 @@ def tarp_rows(
 
 
 def tarp_patches(tarp: EdgeTarps | PulseTarp, first: float, second: float) -> list[Patch]:
-    """The rectangles of a target with levels of their own; a pulse has the first level alone."""
+    """The rectangles of a target with levels of their own; a pulse has the first level alone.
+
+    Raises
+    ------
+    OptionError
+        If it is no such target.
+    """
+    require_all((EdgeTarps, PulseTarp), "tarp", [tarp])
     middle = Line(tarp.row, tarp.col, tarp.normal_deg)
     if isinstance(tarp, PulseTarp):
         sides = (tarp.width_px, tarp.length_px, tarp.normal_deg)
@@ -146,7 +162,14 @@ def tarp_patches(tarp: EdgeTarps | PulseTarp, first: float, second: float) -> li
 
 
 def tarp_region(tarp: EdgeTarps | PulseTarp) -> Floats:
-    """Corners of what may be measured of a target, (4, 2) as (row, col)."""
+    """Corners of what may be measured of a target, (4, 2) as (row, col).
+
+    Raises
+    ------
+    OptionError
+        If it is no such target.
+    """
+    require_all((EdgeTarps, PulseTarp), "tarp", [tarp])
     if isinstance(tarp, PulseTarp):
         across, along = 0.5 * tarp.width_px + 14.0, 0.5 * tarp.length_px - GUARD_PX
     else:

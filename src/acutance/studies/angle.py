@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from acutance.arguments import require_types
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.errors import OptionError, PhaseError
@@ -17,7 +18,7 @@ from acutance.studies.result import Finding, StudyResult
 from acutance.studies.table import Table
 from acutance.studies.targets import measure_published_pulse
 from acutance.studies.trials import Execution, Record, run_trials
-from acutance.targets.options import require_types
+from acutance.targets.options import chosen_options
 from acutance.targets.straight import measure_pulse
 from acutance.targets.straight.published.local_polynomial import window_gain
 
@@ -45,6 +46,11 @@ class AngleOptions:
     width_px : float
     shape : (rows, cols)
     pulse_dn : (dark, bright)
+
+    Raises
+    ------
+    OptionError
+        If a value is of another kind, or makes no sense.
     """
 
     sensor: Sensor = field(default_factory=lambda: preset("generic-2005"))
@@ -88,7 +94,8 @@ def study_angle(
         percent, and the closed form of each (``_predicted``), means over the places; "trials"
         every image.
     """
-    chosen, how = options or AngleOptions(), execution or Execution()
+    chosen = chosen_options(options, AngleOptions)
+    how = chosen_options(execution, Execution)
     trials = [
         (angle, place / chosen.places)
         for angle in chosen.angles_deg

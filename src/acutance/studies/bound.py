@@ -28,13 +28,20 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from acutance.arguments import (
+    require_choice,
+    require_finite,
+    require_kind,
+    require_numbers,
+    require_whole,
+)
 from acutance.curves import Esf, Lsf, Mtf, Response
 from acutance.curves.direction import unit_vector
 from acutance.curves.grid import FREQ_CPP, Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.numerics.gaussian_pixel import GaussianPixel
 from acutance.optics import Sensor
-from acutance.optics.sensor import TRUTH_DISTANCE_PX
+from acutance.optics.sensor import TRUTH_DISTANCE_PX, require_sensor
 from acutance.targets.straight.pulse_spectrum import width_sensitivity_per_px
 
 __all__ = ["Design", "MetricBound", "equivalent_blur", "free_bound", "shape_bound"]
@@ -63,6 +70,11 @@ class Design:
         Of a pulse; an edge has none.
     cols : int
         Length of every row.
+
+    Raises
+    ------
+    OptionError
+        If one of them is of another kind.
     """
 
     target: Literal["edge", "pulse"]
@@ -70,6 +82,11 @@ class Design:
     angle_deg: float
     width_px: float = math.nan
     cols: int = 40
+
+    def __post_init__(self) -> None:
+        require_choice(("edge", "pulse"), target=self.target)
+        require_whole(1, rows=self.rows, cols=self.cols)
+        require_numbers(angle_deg=self.angle_deg, width_px=self.width_px)
 
 
 @dataclass(frozen=True)
@@ -89,7 +106,13 @@ def equivalent_blur(sensor: Sensor, angle_deg: float) -> GaussianPixel:
     ----------
     sensor : Sensor
     angle_deg : float
+
+    Raises
+    ------
+    OptionError, ModelError
+        If there is no sensor, or no finite angle.
     """
+    require_sensor(sensor)
     wanted = sensor.response(angle_deg).fwhm_px.value
     low, high = 0.05, 8.0
     for _ in range(40):
@@ -108,7 +131,15 @@ def shape_bound(blur: GaussianPixel, design: Design, snr: float) -> MetricBound:
     design : Design
     snr : float
         Height of the target over the noise's standard deviation.
+
+    Raises
+    ------
+    OptionError, ModelError
+        If an argument is of the wrong kind, or a number is not finite.
     """
+    require_kind(GaussianPixel, blur=blur)
+    require_kind(Design, design=design)
+    require_finite(snr=snr)
     information = _information(blur, design)
     scale = np.sqrt(np.diag(information))
     covariance = np.linalg.inv(information / np.outer(scale, scale))
@@ -133,7 +164,13 @@ def free_bound(blur: GaussianPixel, design: Design, snr: float, window_px: float
     snr : float
     window_px : float, optional
         Length of the window the LSF, or the pulse's response, lies in.
+
+    Raises
+    ------
+    OptionError, ModelError
+        If an argument is of the wrong kind, or a number is not finite.
     """
+    require_finite(window_px=window_px)
     shape = shape_bound(blur, design, snr)
     samples = design.rows / math.cos(math.radians(design.angle_deg))
     per_edge = math.sqrt(window_px / (2 * samples)) / snr

@@ -58,9 +58,9 @@ def run_study(name: str, options: Any = None, execution: Execution | None = None
     OptionError
         If there is no such study, or the options are another's.
     """
-    if name == "plan":
+    if isinstance(name, str) and name == "plan":
         raise OptionError("a plan has functions of its own: plan_target and plan_mirrors")
-    if name not in STUDIES:
+    if not isinstance(name, str) or name not in STUDIES:
         raise OptionError(f"there is no study {name!r}: the studies are {', '.join(STUDIES)}")
     study = STUDIES[name]
     if options is not None and not isinstance(options, study.options):

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from acutance.arguments import require_types
 from acutance.errors import OptionError
 from acutance.optics import Sensor, preset
 from acutance.simulate import GroundNoise, pulse
@@ -15,7 +16,7 @@ from acutance.studies.scatter import error_columns, find_minimum, find_refusal
 from acutance.studies.table import Cell, Table
 from acutance.studies.targets import ESTIMATOR_WORDS, ESTIMATORS, Estimator, measure_both_pulses
 from acutance.studies.trials import Execution, Record, run_trials
-from acutance.targets.options import require_types
+from acutance.targets.options import chosen_options
 
 __all__ = ["GroundNoiseOptions", "study_ground_noise"]
 
@@ -49,6 +50,11 @@ class GroundNoiseOptions:
         Twenty white fields of 1 to 20 sub-pixels, variance 100 each.
     angle_deg, width_px : float
     shape : (rows, cols)
+
+    Raises
+    ------
+    OptionError
+        If a value is of another kind, or makes no sense.
     """
 
     sensor: Sensor = field(default_factory=lambda: preset("generic-2005"))
@@ -85,7 +91,8 @@ def study_ground_noise(
         Table "ground-noise" has a row for each contrast, its SNR by the noise that such ground
         makes in images; "trials" every measurement.
     """
-    chosen, how = options or GroundNoiseOptions(), execution or Execution()
+    chosen = chosen_options(options, GroundNoiseOptions)
+    how = chosen_options(execution, Execution)
     trials = [levels for levels in chosen.levels_dn for _ in range(chosen.runs)]
     records = run_trials("ground-noise", chosen, trials, measure_ground_trial, how)
     measured = Table.of_rows(

@@ -11,10 +11,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
+from acutance.arguments import require_choice, require_finite, require_place, require_whole
 from acutance.curves.grid import Floats
 from acutance.targets.points.checks import phase_gap_px
 
@@ -72,6 +73,7 @@ class MirrorLayout:
 
     def gap_px(self, gsd_change: float = 0.0) -> float:
         """Largest gap of the phases, when the GSD is larger by a share than planned."""
+        require_finite(gsd_change=gsd_change)
         return phase_gap_px(self.places_px / (1 + gsd_change))
 
 
@@ -95,7 +97,16 @@ def lay_out_mirrors(
         Number of slanted columns.
     spacing_px : float, optional
         Least distance along a column, or pitch of the square.
+
+    Raises
+    ------
+    OptionError, ModelError
+        If an argument is of the wrong kind, or a number is not finite.
     """
+    require_whole(1, count=count, columns=columns)
+    require_finite(spacing_px=spacing_px)
+    require_choice(get_args(Arrangement), arrangement=arrangement)
+    require_place(pixel_m=pixel_m)
     if arrangement == "square":
         side = math.ceil(math.sqrt(count))
         pitch = math.ceil(spacing_px - 1e-9) + (1 / side if side > 1 else 0.0)

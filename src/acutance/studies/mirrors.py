@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from acutance.arguments import require_kind, require_optional, require_types
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.errors import OptionError, TargetError
@@ -30,7 +31,6 @@ from acutance.studies.mirror_layout import (
     lay_out_mirrors,
 )
 from acutance.studies.trials import Execution, Record, run_trials
-from acutance.targets.options import require_types
 from acutance.targets.points import measure_points
 
 __all__ = ["MirrorPlan", "MirrorPlanOptions", "place_errors_px", "plan_mirrors"]
@@ -289,7 +289,14 @@ def plan_mirrors(options: MirrorPlanOptions, execution: Execution | None = None)
     options : MirrorPlanOptions
     execution : Execution, optional
         How the simulated images are measured.
+
+    Raises
+    ------
+    OptionError
+        If one of them is something else.
     """
+    require_kind(MirrorPlanOptions, options=options)
+    require_optional(Execution, execution=execution)
     gsd_m = options.sensor.gsd_m or 1.0
     along_m = options.sensor.gsd_along_m or gsd_m
     layout = lay_out_mirrors(

@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 
+from acutance.arguments import require_types
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.errors import OptionError, TargetError
@@ -18,7 +19,7 @@ from acutance.studies.bound import Design, equivalent_blur, free_bound, shape_bo
 from acutance.studies.result import Finding, StudyResult
 from acutance.studies.table import Cell, Table
 from acutance.studies.trials import Execution, Record, run_trials
-from acutance.targets.options import require_types
+from acutance.targets.options import chosen_options
 from acutance.targets.straight import measure_edge, measure_pulse
 
 __all__ = ["MAX_WIDTH_PX", "MIN_WIDTH_PX", "PLAN_METRICS", "PlanOptions", "plan_target"]
@@ -67,6 +68,11 @@ class PlanOptions:
         Wanted standard deviation of the MTF at Nyquist: answered by a number of rows.
     sensor_name : str, optional
         What the sensor is called.
+
+    Raises
+    ------
+    OptionError
+        If a value is of another kind, or makes no sense.
     """
 
     target: Literal["edge", "pulse"] = "edge"
@@ -141,7 +147,8 @@ def plan_target(
         the scatter of our estimator (``_std``), its rms error (``_rms``) and what it states
         itself (``_stated``); of the MTF at Nyquist also the bound of a free LSF (``_free``).
     """
-    chosen, how = options or PlanOptions(), execution or Execution()
+    chosen = chosen_options(options, PlanOptions)
+    how = chosen_options(execution, Execution)
     listed = list(_designs(chosen))
     # The plan comes once in every list: its images are simulated once.
     designs = list({repr(design): design for _, design in listed}.values())

@@ -6,7 +6,9 @@ import math
 
 import numpy as np
 
+from acutance.arguments import require_floats, require_numbers
 from acutance.curves.grid import Floats
+from acutance.errors import OptionError
 from acutance.studies.result import Finding
 from acutance.studies.table import Cell, Table
 
@@ -68,7 +70,19 @@ def minimum_snr(snr: Floats, rms_percent: Floats, limit_percent: float) -> float
     -------
     float
         ``nan`` if no level is good enough, the lowest level if all are.
+
+    Raises
+    ------
+    OptionError
+        If they are no lists of numbers of one length, or the limit is no number.
     """
+    snr, rms_percent = require_floats("snr", snr), require_floats("rms_percent", rms_percent)
+    require_numbers(limit_percent=limit_percent)
+    if snr.ndim != 1 or snr.shape != rms_percent.shape:
+        raise OptionError(
+            f"snr of shape {snr.shape} with rms_percent of shape {rms_percent.shape}: give two "
+            "lists of one length"
+        )
     known = np.isfinite(snr) & np.isfinite(rms_percent)
     order = np.argsort(snr[known])
     levels = snr[known][order]

@@ -8,6 +8,7 @@ from typing import Literal
 
 import numpy as np
 
+from acutance.arguments import require_types
 from acutance.errors import OptionError
 from acutance.optics import Sensor, preset
 from acutance.simulate import Noise, edge, pulse
@@ -22,7 +23,7 @@ from acutance.studies.targets import (
     measure_both_pulses,
 )
 from acutance.studies.trials import Execution, Record, run_trials
-from acutance.targets.options import require_types
+from acutance.targets.options import chosen_options
 
 __all__ = ["SnrOptions", "SnrTrial", "study_snr"]
 
@@ -54,6 +55,11 @@ class SnrOptions:
     angle_deg, width_px : float
     shape : (rows, cols)
     edge_dn, pulse_dn : (dark, bright)
+
+    Raises
+    ------
+    OptionError
+        If a value is of another kind, or makes no sense.
     """
 
     sensor: Sensor = field(default_factory=lambda: preset("generic-2005"))
@@ -97,7 +103,8 @@ def study_snr(options: SnrOptions | None = None, execution: Execution | None = N
     StudyResult
         Table "snr" has a row for each target and noise level; "trials" every measurement.
     """
-    chosen, how = options or SnrOptions(), execution or Execution()
+    chosen = chosen_options(options, SnrOptions)
+    how = chosen_options(execution, Execution)
     trials = [
         SnrTrial(target, sigma)
         for target in _TARGETS

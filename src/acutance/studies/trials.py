@@ -39,6 +39,11 @@ class Execution:
         Where finished trials are kept, so that an interrupted study goes on.
     progress : function of (done, total), optional
         Called whenever trials have finished.
+
+    Raises
+    ------
+    OptionError
+        If a value is of another kind, or makes no sense.
     """
 
     seed: int = 2005

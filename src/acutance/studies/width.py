@@ -7,6 +7,7 @@ from typing import Literal
 
 import numpy as np
 
+from acutance.arguments import require_types
 from acutance.curves.grid import FREQ_CPP
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.errors import OptionError
@@ -16,7 +17,7 @@ from acutance.studies.result import Finding, StudyResult
 from acutance.studies.table import Table
 from acutance.studies.targets import ESTIMATORS, measure_published_pulse
 from acutance.studies.trials import Execution, Record, run_trials
-from acutance.targets.options import require_types
+from acutance.targets.options import chosen_options
 from acutance.targets.straight import measure_pulse
 from acutance.targets.straight.pulse_spectrum import width_error_gain
 
@@ -68,6 +69,11 @@ class WidthOptions:
     angle_deg : float
     shape : (rows, cols)
     pulse_dn : (dark, bright)
+
+    Raises
+    ------
+    OptionError
+        If a value is of another kind, or makes no sense.
     """
 
     sensor: Sensor = field(default_factory=lambda: preset("generic-2005"))
@@ -103,7 +109,8 @@ def study_width(
         estimators, the closed form of the ratio, and the width our joint fit found. "curves"
         has the MTF of every pulse, a row for each frequency.
     """
-    chosen, how = options or WidthOptions(), execution or Execution()
+    chosen = chosen_options(options, WidthOptions)
+    how = chosen_options(execution, Execution)
     trials = [
         WidthTrial(error, width) for error in ("measured", "true") for width in chosen.widths_px
     ]
@@ -117,7 +124,7 @@ def study_width(
             curves[f"{name}_{trial.error}_{trial.width_px:g}"] = record[name]
     return StudyResult(
         "width", "Width of the pulse and the MTF", chosen, how.seed,
-        {"width": table, "curves": Table(curves)}, _findings(chosen, table),
+        {"width": table, "curves": Table(curves)}, _findings(table),
     )  # fmt: skip
 
 
@@ -170,7 +177,7 @@ def _row(options: WidthOptions, trial: WidthTrial, record: Record) -> dict[str, 
     return row
 
 
-def _findings(options: WidthOptions, table: Table) -> tuple[Finding, ...]:
+def _findings(table: Table) -> tuple[Finding, ...]:
     found = []
     for error in ("measured", "true"):
         rows = table.where(error=error)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from acutance.arguments import require_types
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.errors import OptionError, TargetError
@@ -17,7 +18,7 @@ from acutance.studies.table import Cell, Table
 from acutance.studies.targets import ESTIMATORS, measure_published_pulse
 from acutance.studies.trials import Execution, Record, run_trials
 from acutance.studies.width import WIDTH_FREQ_CPP
-from acutance.targets.options import require_types
+from acutance.targets.options import chosen_options
 from acutance.targets.straight import measure_pulse
 from acutance.targets.straight.pulse_spectrum import width_error_gain
 from acutance.targets.straight.pulse_width import smoothest_width
@@ -68,6 +69,11 @@ class WidthCorrectionOptions:
         Noisy images a case.
     gsd_m, angle_deg : float
     shape : (rows, cols)
+
+    Raises
+    ------
+    OptionError
+        If a value is of another kind, or makes no sense.
     """
 
     cases: tuple[WidthCase, ...] = TABLE_3_3
@@ -102,7 +108,8 @@ def study_width_correction(
         has every image; "curves" the MTF of an image of each case without noise, with the
         stated width and after both corrections.
     """
-    chosen, how = options or WidthCorrectionOptions(), execution or Execution()
+    chosen = chosen_options(options, WidthCorrectionOptions)
+    how = chosen_options(execution, Execution)
     trials = [(case, case.snr) for case in chosen.cases for _ in range(chosen.draws)]
     trials += [(case, math.inf) for case in chosen.cases]
     records = run_trials("width-correction", chosen, trials, measure_correction_trial, how)

@@ -14,6 +14,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Literal
 
+from acutance.arguments import require_all
 from acutance.curves import METRICS, Estimate
 from acutance.curves.estimate import normal_quantile
 from acutance.curves.metric_bounds import limit_fault
@@ -222,6 +223,7 @@ def conformity_of(
     OptionError
         If a text states no limit.
     """
+    limits = require_all(object, "the requirements", limits)
     stated = [one if isinstance(one, ToleranceLimit) else ToleranceLimit.of(one) for one in limits]
     if isinstance(result, TargetResult):
         numbers, doubts = _of_target(result)

@@ -107,11 +107,21 @@ def _are_pairs(image: Any) -> bool:
 
 def _of_one(image: Any, regions: Iterable[Any]) -> Iterator[tuple[Any, Any]]:
     source = Image.of(image)
+    if isinstance(regions, str | bytes | type) or not isinstance(regions, Iterable):
+        raise OptionError(f"regions are {regions!r:.80}: give a list of regions")
     return ((source, roi) for roi in regions)
 
 
 def _numbered(pairs: Any) -> Iterator[tuple[int, Any, Any]]:
-    return ((place, image, roi) for place, (image, roi) in enumerate(pairs))
+    for place, pair in enumerate(pairs):
+        try:
+            image, roi = pair
+        except (TypeError, ValueError):
+            raise OptionError(
+                f"without regions a list of pairs (image, region) is measured, and number "
+                f"{place + 1} is {pair!r:.80}: give regions"
+            ) from None
+        yield place, image, roi
 
 
 def _on_disk(pairs: Iterator[tuple[int, Any, Any]], folder: Path) -> Iterator[tuple[int, Any, Any]]:

@@ -11,14 +11,12 @@ from acutance.errors import OptionError
 from acutance.optics.preset import preset
 from acutance.targets.straight.fit_pulse import PulsePixels, fit_pulse
 from acutance.targets.straight.published import SdsuPulseOptions, sdsu_2005_pulse
-from acutance.targets.straight.pulse_width import (
-    critical_frequencies,
-    smoothest_width,
-    width_consistency,
+from acutance.targets.straight.pulse_spectrum import (
     width_error_gain,
     width_sensitivity_per_px,
     zeros_cpp,
 )
+from acutance.targets.straight.pulse_width import smoothest_width
 
 SYSTEMS = simulate.reference_systems()
 QUIET = SdsuPulseOptions(replicates=0)
@@ -78,27 +76,6 @@ def test_ratio_method_errs_by_the_closed_form():
             assert wrong(freq).value / right(freq).value == pytest.approx(expected, rel=2e-3)
 
 
-def test_nyquist_is_unusable_when_the_gsd_changes():
-    in_2003 = critical_frequencies(8.83 / 2.4)
-    assert [(found.name, round(found.zero_cpp, 3)) for found in in_2003] == [
-        ("Nyquist", 0.544),
-        ("0.25", 0.272),
-    ]
-    assert in_2003[0].change_per_percent == pytest.approx(0.115, abs=2e-3)
-    assert "Nyquist (0.500 cycles/px) lies 0.044 from a zero" in str(in_2003[0])
-    assert critical_frequencies(8.83 / 2.8) == ()
-
-
-def test_reported_frequencies_are_held_against_the_zeros():
-    reported = {"MTF50": 0.338, "MTF30": math.nan, "Nyquist": 0.5}
-    (found,) = critical_frequencies(3.0, reported)
-    assert (found.name, found.zero_cpp) == ("MTF50", pytest.approx(1 / 3))
-    assert found.to_dict()["distance_cpp"] == pytest.approx(0.338 - 1 / 3)
-    assert critical_frequencies(3.0, reported, margin_cpp=0.002) == ()
-    (at_zero,) = critical_frequencies(2.5, {"x": 0.4})
-    assert "100 % or more" in str(at_zero)
-
-
 @pytest.mark.parametrize("name", sorted(SYSTEMS))
 @pytest.mark.parametrize("true_px", [2.75, 3.0, 3.25])
 def test_smoothest_width_is_the_true_one(name, true_px):
@@ -150,29 +127,6 @@ def test_widths_to_try_are_the_callers():
     assert found.chosen_px == pytest.approx(3.0, abs=0.02)
     with pytest.raises(OptionError, match="at least three"):
         smoothest_width(fit, [3.0, 3.1])
-
-
-def test_joint_fit_says_whether_a_stated_width_can_be_right():
-    rng = np.random.default_rng(11)
-    trimmed = band_of(SYSTEMS["gaussian"], shape=(40, 40), snr=70, rng=rng)
-    fit = fit_pulse(trimmed)
-    good = width_consistency(fit, 3.0)
-    assert good.consistent
-    assert "agree" in good.verdict
-    assert abs(good.sigmas) < 3
-    bad = width_consistency(fit, 2.9)
-    assert bad.difference_px == pytest.approx(0.1, abs=0.03)
-    assert bad.sigmas == pytest.approx(bad.difference_px / fit.pulse_width.std)
-    assert not bad.consistent
-    assert "almost certainly too narrow" in bad.verdict
-    assert "too wide" in width_consistency(fit, 3.1).verdict
-    assert bad.to_dict()["consistent"] is False
-
-
-def test_held_width_cannot_be_asked():
-    held = fit_pulse(band_of(SYSTEMS["gaussian"], shape=(40, 40)), fit_width=False)
-    with pytest.raises(OptionError, match="fit_width=True"):
-        width_consistency(held, 3.0)
 
 
 def test_width_of_the_generic_sensor_is_found_where_nyquist_is_unusable():

@@ -31,6 +31,7 @@ from acutance.archive.comparisons.means import difference_of_means
 from acutance.archive.comparisons.pairing import find_pairs
 from acutance.archive.comparisons.random_difference import RandomDifference
 from acutance.archive.comparisons.same_images import difference_of_pairs
+from acutance.archive.trends.possible_dates import impossible_date_notes
 from acutance.archive.weighted_means import weighted_mean
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
@@ -87,6 +88,7 @@ def compare_groups(
     return GroupComparison(
         metric=metric, by=by, groups=group_names(rows, metric, by),
         differences=tuple(differences), scatters=tuple(scatters),
+        notes=tuple(impossible_date_notes(rows, np.isfinite(rows[metric]))),
     )  # fmt: skip
 
 

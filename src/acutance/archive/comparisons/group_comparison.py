@@ -79,6 +79,8 @@ class GroupComparison:
         are no two.
     scatters : tuple of GroupScatter
         Where there are three groups or more.
+    notes : tuple of str
+        What is peculiar about the images: dates that no image can have.
     """
 
     metric: str
@@ -86,6 +88,7 @@ class GroupComparison:
     groups: tuple[str, ...]
     differences: tuple[Difference, ...]
     scatters: tuple[GroupScatter, ...]
+    notes: tuple[str, ...] = ()
 
     @property
     def summary(self) -> str:
@@ -118,6 +121,8 @@ class GroupComparison:
             yield one.summary
         for scatter in self.scatters:
             yield scatter.sentence
+        if self.differences:
+            yield from self.notes
 
     def to_dict(self) -> dict[str, Any]:
         """All answers as strict JSON types."""
@@ -127,6 +132,7 @@ class GroupComparison:
             "groups": list(self.groups),
             "differences": [one.to_dict() for one in self.differences],
             "scatters": [one.to_dict() for one in self.scatters],
+            "notes": list(self.notes),
         }
 
     def _repr_html_(self) -> str:

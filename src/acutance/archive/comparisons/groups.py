@@ -149,9 +149,9 @@ def _numbered(words: Sequence[_Word]) -> tuple[list[_Word], NDArray[np.int64]]:
 
 
 def _require(rows: Columns, metric: str, by: str) -> None:
-    if metric not in METRICS:
+    if not isinstance(metric, str) or metric not in METRICS:
         raise OptionError(f"there is no metric {metric!r}, only {', '.join(METRICS)}")
-    if by not in COMPARED:
+    if not isinstance(by, str) or by not in COMPARED:
         raise OptionError(f"{by!r} cannot be compared: choose of {', '.join(COMPARED)}")
     if not len(rows):
         raise NothingSelectedError("the archive holds nothing that is selected: widen the filters")

@@ -17,6 +17,7 @@ from acutance.archive.exchange.stac import write_stac
 from acutance.archive.runs import named_once
 from acutance.archive.selection import Selection
 from acutance.archive.stored_entries import select_ids, undamaged_entries
+from acutance.arguments import require_path
 from acutance.errors import OptionError
 
 __all__ = ["FORMATS", "export_entries"]
@@ -62,7 +63,8 @@ def export_entries(
         If there is no such format, its library is missing, the place cannot be written, or is
         that of an archive.
     """
-    if to not in FORMATS:
+    require_path(place=place)
+    if not isinstance(to, str) or to not in FORMATS:
         raise OptionError(f"there is no format {to!r} to export to, only {', '.join(FORMATS)}")
     path = Path(place)
     if not path.absolute().parent.is_dir():

@@ -44,7 +44,7 @@ def published_entries(name: str) -> list[Entry]:
     --------
     >>> archive.add_entries(published_entries("kompsat3-2014"))  # doctest: +SKIP
     """
-    if name not in PUBLISHED:
+    if not isinstance(name, str) or name not in PUBLISHED:
         raise OptionError(f"there is no publication {name!r}, only {', '.join(PUBLISHED)}")
     file = resources.files("acutance.archive.published").joinpath(f"{name}.toml")
     document = tomllib.loads(file.read_text(encoding="utf-8"))

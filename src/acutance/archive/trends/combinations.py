@@ -227,7 +227,7 @@ def _of_sets(
         for log_one, steps in zip(row, sets.steps[best], strict=True):
             if log_one - log_sum > np.log(3e-4):
                 nodes = scatter_nodes(_with_steps(model.regression, steps), places)
-                nodes, effect = _without_effects(nodes, model.effects, columns, unit)
+                nodes, effect = _without_effects(nodes, model.effects, columns)
                 low, high = _years(images, steps)
                 found.append((float(log_one), Combination(0.0, state, low, high, nodes, effect)))
     return found, log_sum
@@ -242,7 +242,7 @@ def _with_steps(model: StudentModel, steps: NDArray[np.int64]) -> StudentModel:
 
 
 def _without_effects(
-    nodes: ScatterNodes, effects: EffectsGiven, columns: int, unit: float
+    nodes: ScatterNodes, effects: EffectsGiven, columns: int
 ) -> tuple[ScatterNodes, Floats]:
     """The densities of all other coefficients, and the mean of the effects in the images."""
     end = columns + effects.columns.shape[1]

@@ -11,6 +11,7 @@ from scipy.special import ndtr
 
 from acutance.archive.trends.posterior import TrendPosterior
 from acutance.archive.trends.series import date_of
+from acutance.arguments import require_numbers
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 
@@ -41,7 +42,14 @@ class Crossing(ShortRepr):
     probability: Floats
 
     def by(self, level: float) -> date | None:
-        """The day by which it has passed with a probability; ``None`` if not within the time."""
+        """The day by which it has passed with a probability; ``None`` if not within the time.
+
+        Raises
+        ------
+        OptionError
+            If it is no number.
+        """
+        require_numbers(level=level)
         if self.probability[-1] < level:
             return None
         at = int(np.argmax(self.probability >= level))

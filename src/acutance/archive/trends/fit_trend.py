@@ -16,6 +16,7 @@ from acutance.archive.trends.series import Event, Series, date_of
 from acutance.archive.trends.target_effects import TargetEffects, effects_and_images
 from acutance.archive.trends.trend import BadDay, Trend
 from acutance.archive.trends.tuned import MAX_IMAGES, MIN_IMAGES, OUTLIER_SCALES
+from acutance.arguments import require_all, require_kind
 from acutance.curves.grid import Floats
 from acutance.errors import OptionError
 
@@ -45,8 +46,11 @@ def fit_trend(series: Series, events: Sequence[Event] = ()) -> Trend:
     Raises
     ------
     OptionError
-        If fewer than three images have dates, or all are of one day.
+        If fewer than three images have dates, or all are of one day; if an argument is of the
+        wrong kind.
     """
+    require_kind(Series, series=series)
+    events = require_all(Event, "events", events)
     dated = series.dated()
     changes, notes = gsd_events(dated)
     effects, single = effects_and_images(dated)

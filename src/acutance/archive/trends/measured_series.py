@@ -179,7 +179,7 @@ def gsd_words(gsd_m: Floats) -> str:
 
 
 def _require_metric(metric: str) -> None:
-    if metric not in METRICS:
+    if not isinstance(metric, str) or metric not in METRICS:
         raise OptionError(f"there is no metric {metric!r}, only {', '.join(METRICS)}")
 
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from acutance.archive.counted import counted
 from acutance.archive.dates import as_utc
+from acutance.arguments import require_numbers, require_types
 from acutance.curves.grid import Floats
 from acutance.curves.metric_words import metric_words
 from acutance.curves.short_repr import ShortRepr
@@ -40,7 +41,16 @@ def moment_of(year: float) -> datetime:
 
 
 def date_of(year: float) -> date:
-    """The day of a year with decimals."""
+    """The day of a year with decimals, 1 to 9999.
+
+    Raises
+    ------
+    OptionError
+        If there is no such year.
+    """
+    require_numbers(year=year)
+    if not 1 <= year <= MAXYEAR + 1:
+        raise OptionError(f"year is {year:g}: give one from 1 to {MAXYEAR}, with decimals")
     # Half a second more: midnight stays on its day.
     return (min(moment_of(year), _LAST) + timedelta(seconds=0.5)).date()
 
@@ -60,11 +70,20 @@ class Event:
         "refocus", "new processor".
     changes_drift : bool, optional
         Whether the drift may be another one afterwards, too.
+
+    Raises
+    ------
+    OptionError
+        If one of them is of another kind, or there is no such date.
     """
 
     when: datetime | date | str
     name: str
     changes_drift: bool = False
+
+    def __post_init__(self) -> None:
+        require_types(self)
+        as_utc(self.when, f"the date of {self.name or 'an event'}")
 
     @property
     def year(self) -> float:

@@ -24,6 +24,7 @@ from acutance.archive.trends.scatter import with_scatter
 from acutance.archive.trends.series import date_of, decimal_year
 from acutance.archive.trends.tuned import MIN_IMAGES_BY_STEPS
 from acutance.archive.trends.words import trend_text
+from acutance.arguments import require_finite, require_flags, require_floats, require_numbers
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.curves.metric_bounds import limit_fault, lowest_of
@@ -224,6 +225,7 @@ class Trend(ShortRepr):
         season : bool, optional
             Without it the mean over a year around the date.
         """
+        require_finite(year=year)
         mean, std = self._drifting.of(self._drifting.rows(np.array([year]), season=season))
         found = NormalMixture(self._drifting.share, mean[:, 0], std[:, 0])
         return found.wider(self.images.systematic_std)
@@ -244,7 +246,16 @@ class Trend(ShortRepr):
         when : datetime, date or str
         std : float, optional
             Random standard deviation of its measurement; that of a typical one without it.
+
+        Raises
+        ------
+        OptionError
+            If there is no such date, or the deviation is no number from 0 on.
         """
+        if std is not None:
+            require_finite(std=std)
+            if std < 0:
+                raise OptionError(f"std is {std:g}, a deviation has to be 0 or more")
         year = decimal_year(when)
         mean, own = self._drifting.of(self._drifting.rows(np.array([year])))
         found = NormalMixture(self._drifting.share, mean[:, 0], own[:, 0])
@@ -269,8 +280,11 @@ class Trend(ShortRepr):
         Raises
         ------
         OptionError
-            If it is longer, or the metric cannot have such a limit.
+            If it is longer, the metric cannot have such a limit, or an argument is of another kind.
         """
+        require_numbers(limit=limit, within_years=within_years)
+        if is_minimum is not None:
+            require_flags(is_minimum=is_minimum)
         if not (np.isfinite(limit) and 0 < within_years <= _MAX_YEARS):
             raise OptionError(
                 f"the limit is {limit:g} and the time {within_years:g} years: give a number, and "
@@ -291,9 +305,17 @@ class Trend(ShortRepr):
         ----------
         years : (n,) array, optional
             With decimals; from the first to the last image without it.
+
+        Raises
+        ------
+        OptionError
+            If they are no list of finite numbers.
         """
         if years is None:
             years = np.linspace(self.images.when[0], self.images.when[-1], _DATES)
+        years = require_floats("years", years)
+        if years.ndim != 1 or not years.size or not np.isfinite(years).all():
+            raise OptionError(f"years are {years!r:.80}: give a list of years, with decimals")
         found = self._drifting
         mean, std = found.of(found.rows(years))
         wide = np.hypot(std, self.images.systematic_std)

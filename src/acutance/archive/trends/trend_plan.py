@@ -16,11 +16,11 @@ from acutance.archive.trends.fit_trend import fit_trend
 from acutance.archive.trends.series import Series
 from acutance.archive.trends.trend import Trend
 from acutance.archive.trends.tuned import MIN_IMAGES
+from acutance.arguments import require_types
 from acutance.curves.estimate import normal_quantile
 from acutance.curves.grid import Floats
 from acutance.errors import OptionError
 from acutance.execution import run_tasks
-from acutance.targets.options import require_types
 
 __all__ = ["NOTICED", "PlannedWatch", "TrendPlan", "TrendPlanOptions", "plan_trend"]
 
@@ -58,6 +58,11 @@ class TrendPlanOptions:
         Simulated series of each design, 10 or more; 0 leaves the simulation out.
     seed : int
         Of the random numbers.
+
+    Raises
+    ------
+    OptionError
+        If a value is of another kind, or makes no sense.
     """
 
     images_per_year: tuple[float, ...] = (12.0,)

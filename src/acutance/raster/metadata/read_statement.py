@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from acutance.arguments import require_paths
 from acutance.errors import ImageError, RegionError
 from acutance.raster.image import Image
 from acutance.raster.metadata.documents import read_document
@@ -43,7 +44,11 @@ def read_statement(
     ------
     ImageError
         If the image cannot be read, or a document that was named is not there.
+    OptionError
+        If the documents are no sequence of paths.
     """
+    if documents is not None:
+        documents = require_paths("documents", documents)
     image = open_unnamed(path)
     name = Path(str(image.path)).name
     if documents is None:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from datetime import date, datetime
 from typing import Any
 
+from acutance.arguments import require_choice, require_whole
 from acutance.curves.short_repr import ShortRepr
 from acutance.raster.metadata.findings import FIELDS, Findings, Stated
 from acutance.raster.metadata.sun import sun_angles
@@ -70,12 +71,26 @@ class ImageStatement(ShortRepr):
         return {name: one for name, one in every if one is not None}
 
     def value(self, name: str) -> Any:
-        """The value of a field; None if it is not stated."""
+        """The value of a field; None if it is not stated.
+
+        Raises
+        ------
+        OptionError
+            If there is no such field.
+        """
+        require_choice(FIELDS, name=name)
         found = getattr(self, name)
         return None if found is None else found.value
 
     def band_name(self, band: int) -> str | None:
-        """The name of a band by its number, from 1."""
+        """The name of a band by its number, from 1.
+
+        Raises
+        ------
+        OptionError
+            If it is no whole number.
+        """
+        require_whole(0, band=band)
         names = () if self.bands is None else self.bands.value
         return names[band - 1] if 1 <= band <= len(names) else None
 

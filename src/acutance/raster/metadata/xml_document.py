@@ -6,7 +6,7 @@ from typing import Any
 from xml.etree.ElementTree import Element, TreeBuilder
 from xml.parsers import expat
 
-__all__ = ["XmlRefusedError", "attribute_at", "parse_xml", "text_at"]
+__all__ = ["XmlRefusedError", "parse_xml", "text_at"]
 
 _MAX_BYTES = 64 * 2**20
 _MAX_DEPTH = 100
@@ -68,9 +68,3 @@ def text_at(root: Element | None, path: str) -> str | None:
     found = None if root is None else root.find(path)
     text = None if found is None or found.text is None else found.text.strip()
     return text or None
-
-
-def attribute_at(root: Element, path: str, name: str) -> str | None:
-    """An attribute of the first element of a path; None where there is none."""
-    found = root.find(path)
-    return None if found is None else found.get(name)

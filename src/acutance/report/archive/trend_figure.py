@@ -63,7 +63,7 @@ def draw_trend(axes: Axes, trend: Trend, *, limit: float | None = None) -> None:
     low, high = _range(trend, bands, limit)
     _draw_images(axes, trend, low, high)
     if limit is not None:
-        _draw_limit(axes, trend, limit, ahead)
+        _draw_limit(axes, limit, ahead)
     axes.set_ylim(low, high)
     axes.set_xlim(axis_days(years[0] - 0.02 * (ahead - years[0])), axis_days(ahead))
     _draw_changes(axes, trend)
@@ -139,7 +139,7 @@ def are_bad(trend: Trend) -> NDArray[np.bool_]:
     return np.isin(trend.images.value, [day.value for day in trend.bad_days])
 
 
-def _draw_limit(axes: Axes, trend: Trend, limit: float, ahead: float) -> None:
+def _draw_limit(axes: Axes, limit: float, ahead: float) -> None:
     axes.axhline(limit, color=VERMILION, linewidth=1.2, linestyle="--")
     axes.annotate(
         f"limit {limit:g}", (axis_days(ahead), limit), xytext=(-4, 3), ha="right",

@@ -57,7 +57,7 @@ def trend_page(trend: Trend, *, limit: float | None = None, command: str | None 
         plates=(trend_plate(trend, limit),),
     )
     tables = (_numbers_table(trend), *_changes_table(trend), _images_table(trend))
-    content = (answer, *map(Section.of_table, tables), _method_section(trend, command))
+    content = (answer, *map(Section.of_table, tables), _method_section(command))
     facts = {
         "measurements": str(trend.measurements),
         "images": str(trend.images.images),
@@ -227,7 +227,7 @@ def _images_table(trend: Trend) -> Table:
     )  # fmt: skip
 
 
-def _method_section(trend: Trend, command: str | None) -> Section:
+def _method_section(command: str | None) -> Section:
     return Section(
         "How",
         paragraphs=(

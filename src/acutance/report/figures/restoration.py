@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from acutance.arguments import require_class, require_floats
 from acutance.curves.grid import Floats
 from acutance.report.figures.curves import COLORS, band_edges, mark_frequencies
 from acutance.report.figures.panel import Panel
@@ -96,6 +97,7 @@ def restoration_figure(filter: RestorationFilter) -> Figure:
     ----------
     filter : RestorationFilter
     """
+    require_class("RestorationFilter", filter=filter)
     panels = restoration_panels(filter)
     with styled():
         figure = new_page(_WIDTH_IN, 2 * _ROW_IN + 0.5)
@@ -117,6 +119,7 @@ def before_after_figure(before: Floats, after: Floats, titles: tuple[str, str]) 
     before, after : (rows, cols) array
     titles : (str, str)
     """
+    before, after = require_floats("before", before), require_floats("after", after)
     low, high = np.nanpercentile(before, (0.5, 99.5))
     with styled():
         figure = new_page(12.0, 0.6 + 5.8 * before.shape[0] / before.shape[1])

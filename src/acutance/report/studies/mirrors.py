@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from acutance.archive.counted import counted
+from acutance.arguments import require_class
 from acutance.report.labels import MISSING, format_number
 from acutance.report.paper import BLUE, FAINT, INK, new_page, styled
 from acutance.report.text import align_columns
@@ -36,6 +37,7 @@ _SURELY_BIASED = 4.0
 
 def mirror_plan_text(plan: MirrorPlan) -> str:
     """A plan of mirrors as text: layout, mirrors, phases, what to expect."""
+    require_class("MirrorPlan", plan=plan)
     layout, options = plan.layout, plan.options
     along_m, across_m = layout.pixel_m
     if options.count == 1:
@@ -159,6 +161,7 @@ def _biased(plan: MirrorPlan) -> str:
 
 def mirror_plan_figure(plan: MirrorPlan) -> Figure:
     """The mirrors on the ground, and their phases within the pixel."""
+    require_class("MirrorPlan", plan=plan)
     layout = plan.layout
     with styled():
         figure = new_page(9.6, 4.8)

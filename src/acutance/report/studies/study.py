@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from acutance.arguments import require_class
 from acutance.report.studies.angle import angle_figure
 from acutance.report.studies.plan import plan_figure
 from acutance.report.studies.snr import ground_noise_figure, snr_figure
@@ -35,6 +36,7 @@ def study_figure(result: StudyResult) -> Figure:
     ----------
     result : StudyResult
     """
+    require_class("StudyResult", result=result)
     return STUDY_FIGURES[result.name](result)
 
 
@@ -45,6 +47,7 @@ def study_text(result: StudyResult) -> str:
     ----------
     result : StudyResult
     """
+    require_class("StudyResult", result=result)
     lines = [result.title]
     for found in result.findings:
         printed = "" if found.published is None else f" (paper: {found.published:g})"
@@ -59,6 +62,7 @@ def plan_text(result: StudyResult) -> str:
     ----------
     result : StudyResult
     """
+    require_class("StudyResult", result=result)
     is_pulse, table = result.options.target == "pulse", result.table
     head = {
         "varied": "varied", "rows": "rows", "length_m": "length m", "angle_deg": "angle",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING
 
+from acutance.arguments import require_class
 from acutance.report.html import Table
 from acutance.report.labels import MISSING, format_number, word_estimate, write_fixed
 
@@ -111,6 +112,7 @@ def _aligned_table(found: AlignedFit) -> Table:
 
 def sources_csv(measurement: PointsMeasurement) -> str:
     """Every source as CSV: number, row, col, flux, background with standard deviations, SNR."""
+    require_class("PointsMeasurement", measurement=measurement)
     lines = ["source,row,row_std,col,col_std,flux,flux_std,background,background_std,snr"]
     for number, one in enumerate(measurement.sources, start=1):
         places = (f"{part:.4f}" for each in (one.row, one.col) for part in (each.value, each.std))

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from acutance.arguments import require_class
 from acutance.curves.metric_words import metric_words
 from acutance.report.html import Table
 from acutance.report.labels import MISSING, format_number, word_estimate, write_fixed
@@ -31,6 +32,7 @@ def restoration_tables(filter: RestorationFilter) -> tuple[Table, ...]:
     ----------
     filter : RestorationFilter
     """
+    require_class("RestorationFilter", filter=filter)
     return _sharpness(filter), _cost(filter), _trade(filter), _kernel(filter)
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from acutance.arguments import require_texts
 from acutance.curves import Mtf
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
@@ -112,7 +113,7 @@ def read_inputs(
             "combine([first, second])"
         )
     measurements = tuple(measurements)
-    if names is not None and len(names) != len(measurements):
+    if names is not None and len(require_texts("names", names)) != len(measurements):
         raise OptionError(
             f"{len(names)} names were given for {len(measurements)} measurements: give one for each"
         )

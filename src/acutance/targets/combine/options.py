@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from acutance.arguments import require_types
 from acutance.errors import OptionError
 from acutance.targets.check import Limits, require_limits
 from acutance.targets.combine.checks import COMBINE_CHECKS
 from acutance.targets.combine.sensor_forms import FORMS
 from acutance.targets.combine.sensor_terms import TERMS
-from acutance.targets.options import require_types
 
 __all__ = ["CombineOptions"]
 

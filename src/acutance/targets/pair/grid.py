@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from numbers import Real
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from acutance.arguments import require_optional
 from acutance.curves.grid import Floats
 from acutance.errors import OptionError, RegionError
 from acutance.raster import Image
@@ -179,6 +181,7 @@ def pair_grid(low: Image, high: Image, ratio: float | None) -> PairGrid:
     RegionError
         If the images do not overlap, or are turned against each other.
     """
+    require_optional(Real, ratio=ratio)
     if ratio is not None and not (math.isfinite(ratio) and _MIN_RATIO <= ratio <= _MAX_RATIO):
         raise OptionError(
             f"a ratio of {ratio:g} was asked: the low image's GSD has to be {_MIN_RATIO:g} to "

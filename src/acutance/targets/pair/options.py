@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass, field
 from typing import Any
 
+from acutance.arguments import require_types
 from acutance.errors import OptionError
 from acutance.targets.check import Limits, require_limits
-from acutance.targets.options import require_types
 from acutance.targets.pair.checks import PAIR_CHECKS
 
 __all__ = ["BiresolutionOptions"]
@@ -38,6 +38,11 @@ class BiresolutionOptions:
         it.
     limits : mapping of str to float
         Limits of checks (`PAIR_CHECKS`), by name, instead of those of the table.
+
+    Raises
+    ------
+    OptionError
+        If a value is of another kind, or makes no sense.
     """
 
     stop_change: float = 1e-4

@@ -106,7 +106,7 @@ def measure_biresolution(
     ground, gaussian = _gaussian(tiles, match, chosen)
     pixel_fit = _pixel_fit(tiles, ground, gaussian, reference, chosen)
     spectra = _spectra(tiles, ground, pixel_fit, gaussian)
-    fit = pixel_fit if method == "kernel-fit" else fit_spectra(spectra, pixel_fit, gaussian)
+    fit = pixel_fit if method == "kernel-fit" else fit_spectra(spectra, pixel_fit)
     model = KernelOtf.of_fit(
         fit, (tiles.grid.across.band_cpp, tiles.grid.down.band_cpp), reference
     )  # fmt: skip

@@ -244,7 +244,7 @@ def _spectrum(field: Floats, down: Floats, across: Floats) -> Complexes:
     return np.asarray(np.fft.fft2(taper * (field - mean)))
 
 
-def fit_spectra(spectra: PairSpectra | None, fit: KernelFit, gaussian: GaussianFit) -> KernelFit:
+def fit_spectra(spectra: PairSpectra | None, fit: KernelFit) -> KernelFit:
     """The kernel that fits the ratio of spectra, weighted by coherence.
 
     Parameters
@@ -252,7 +252,6 @@ def fit_spectra(spectra: PairSpectra | None, fit: KernelFit, gaussian: GaussianF
     spectra : PairSpectra or None
     fit : KernelFit
         The fit to the pixels: basis, noise and counts are taken from it.
-    gaussian : GaussianFit
 
     Raises
     ------

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from acutance.arguments import require_types
 from acutance.errors import OptionError
 from acutance.geometry.bar_group import Bars
 from acutance.targets.check import Limits, require_limits
-from acutance.targets.options import require_types
 from acutance.targets.periodic.bars_checks import BARS_CHECKS
 from acutance.targets.periodic.stated_contrast import Levels, stated_levels
 
@@ -35,6 +35,11 @@ class BarsOptions:
         Bound the weight of outlying pixels.
     limits : mapping of str to float
         Limits of the checks, where they differ from those of `acutance.targets.QUESTIONS`.
+
+    Raises
+    ------
+    OptionError
+        If a value is of another kind, or contradicts another.
     """
 
     groups: tuple[Bars, ...] = ()

@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass, field
 from typing import Any
 
+from acutance.arguments import require_types
 from acutance.errors import OptionError
 from acutance.targets.check import Limits, require_limits
-from acutance.targets.options import require_types
 from acutance.targets.periodic.star_checks import STAR_CHECKS
 from acutance.targets.periodic.star_waves import Wave
 from acutance.targets.periodic.stated_contrast import Levels, stated_levels
@@ -38,6 +38,11 @@ class StarOptions:
         Bound the weight of outlying pixels.
     limits : mapping of str to float
         Limits of the checks, where they differ from those of `acutance.targets.QUESTIONS`.
+
+    Raises
+    ------
+    OptionError
+        If a value is of another kind, or contradicts another.
     """
 
     wave: Wave = "sine"

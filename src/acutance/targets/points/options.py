@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from acutance.arguments import require_types
 from acutance.errors import OptionError
 from acutance.targets.check import Limits, require_limits
-from acutance.targets.options import require_types
 from acutance.targets.points.checks import POINTS_CHECKS
 from acutance.targets.points.published import SdsuMirrorsOptions
 

@@ -27,9 +27,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import least_squares
 
+from acutance.arguments import require_types
 from acutance.curves.grid import Floats
 from acutance.errors import OptionError, SupportError
-from acutance.targets.options import require_types
 from acutance.targets.points.detect import RejectedSpot
 
 __all__ = [
@@ -59,6 +59,11 @@ class SdsuMirrorsOptions:
         Whether each source is scaled by its own peak above its own bias before all are fitted.
         The report moves places alone. For sources of unequal brightness; among equal ones, half
         way between pixels, sharp Gaussians with too high a peak spoil the sum.
+
+    Raises
+    ------
+    OptionError
+        If a value is of another kind, or makes no sense.
     """
 
     window_px: int = 3

@@ -243,6 +243,11 @@ def require_phases(trimmed: EdgePixels, line: Line, wanted: float) -> None:
     line : Line
     wanted : float
         Limit of the check `sample_phases`: more than the least that can be measured.
+
+    Raises
+    ------
+    PhaseError
+        If there are too few.
     """
     distance = line.normal_distance(trimmed.pixels.row, trimmed.pixels.col)
     phases = sample_phases(distance)

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from acutance.arguments import require_types
 from acutance.curves import Estimate
 from acutance.curves.metrics import RerCentre
 from acutance.targets.check import Limits, require_limits
-from acutance.targets.options import require_types
 from acutance.targets.straight.edge_checks import EDGE_CHECKS
 from acutance.targets.straight.published import (
     FermiOptions,

@@ -10,6 +10,7 @@ from numbers import Real
 
 from numpy.typing import ArrayLike
 
+from acutance.arguments import require_flags
 from acutance.curves import Estimate
 from acutance.errors import OptionError, TargetError
 from acutance.numerics.one_thread import one_thread
@@ -148,6 +149,7 @@ def pulse_steps(
     options: PulseOptions | None = None,
 ) -> Steps[StraightMeasurement]:
     """`measure_pulse` in steps."""
+    require_flags(fit_width=fit_width)
     chosen = chosen_options(options, PulseOptions)
     estimate = require_pulse_method(method)
     region = read_region(image, roi, gsd_m)

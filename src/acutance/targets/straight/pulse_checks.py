@@ -37,7 +37,6 @@ from acutance.targets.straight.pixel_checks import (
 )
 from acutance.targets.straight.published import PublishedPulse
 from acutance.targets.straight.pulse_spectrum import zeros_cpp
-from acutance.targets.straight.pulse_width import WidthConsistency
 from acutance.targets.straight.removed_noise import removed_noise
 from acutance.targets.straight.step_profile import pulse_profile
 from acutance.targets.straight.structure_checks import (
@@ -228,9 +227,10 @@ def width_check(
         return answer("width_sigmas", MAX_RATIO, found, limits, advice=_HELD_ADVICE)
     is_narrow = is_held and fitted.value < LEAST_FREE_PX
     std = math.hypot(fitted.std, _NARROW_STD_PX) if is_narrow else fitted.std
-    compared = WidthConsistency(stated_px, fitted.value, std)
-    value = min(abs(compared.sigmas), MAX_RATIO) if is_held else abs(compared.sigmas)
-    away = f"{compared.difference_px:+.4f} px, {value:.1f} standard deviations"
+    difference_px = fitted.value - stated_px
+    sigmas = abs(difference_px) / std
+    value = min(sigmas, MAX_RATIO) if is_held else sigmas
+    away = f"{difference_px:+.4f} px, {value:.1f} standard deviations"
     if not is_held:
         found = f"the fitted width is {fitted} px, the stated one {stated_px:.4f} px: {away}"
         return answer("width_sigmas", value, found, limits)

@@ -1,12 +1,12 @@
-"""Whether the stated width of a pulse can be right: by the joint fit, and the published way.
+"""Whether the stated width of a pulse can be right, the published way.
 
-The joint fit finds the width with the line spread function (LSF), with a standard deviation. The
-reports of South Dakota State University (Helder, Choi, "Generic sensor modeling using pulse
+The reports of South Dakota State University (Helder, Choi, "Generic sensor modeling using pulse
 method", 2005, sections 3.6.3 and 3.6.4) look at the MTF of the ratio: with too large a width it
 lies too high at .3 and too low at .4 cycles per pixel, and the width that makes it smooth is taken
-for the true one.
+for the true one. The joint fit finds the width with the line spread function, with a standard
+deviation; the check ``width_sigmas`` compares the stated one with that.
 
-What a wrong width does is in `pulse_spectrum`; its functions can be had here too.
+What a wrong width does is in `pulse_spectrum`.
 """
 
 from __future__ import annotations
@@ -20,120 +20,13 @@ from numpy.typing import ArrayLike
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.errors import OptionError
-from acutance.targets.straight.fit_pulse import SplinePulse
 from acutance.targets.straight.published import PublishedPulse
-from acutance.targets.straight.pulse_spectrum import (
-    CriticalFrequency,
-    critical_frequencies,
-    width_error_gain,
-    width_sensitivity_per_px,
-    zeros_cpp,
-)
+from acutance.targets.straight.pulse_spectrum import width_error_gain
 
-__all__ = [
-    "CriticalFrequency",
-    "WidthConsistency",
-    "WidthSearch",
-    "critical_frequencies",
-    "smoothest_width",
-    "width_consistency",
-    "width_error_gain",
-    "width_sensitivity_per_px",
-    "zeros_cpp",
-]
+__all__ = ["WidthSearch", "smoothest_width"]
 
-_AGREES, _DOUBTFUL = 2.0, 3.0
 _DEFORMED_CPP = (0.3, 0.4)
 _SMOOTH_TERMS = 4
-
-
-@dataclass(frozen=True)
-class WidthConsistency:
-    """A stated width against the one found in the image.
-
-    Parameters
-    ----------
-    stated_px, found_px, std_px : float
-        Widths along the normal and the standard deviation of the one that was fitted.
-    """
-
-    stated_px: float
-    found_px: float
-    std_px: float
-
-    @property
-    def difference_px(self) -> float:
-        """Found minus stated."""
-        return self.found_px - self.stated_px
-
-    @property
-    def sigmas(self) -> float:
-        """The difference in standard deviations, with its sign."""
-        return self.difference_px / self.std_px
-
-    @property
-    def consistent(self) -> bool:
-        """Whether the difference is within two standard deviations."""
-        return abs(self.sigmas) <= _AGREES
-
-    @property
-    def verdict(self) -> str:
-        """One sentence: how large the difference is, how sure, and what it would do."""
-        found = (
-            f"the image shows a width of {self.found_px:.3f} ± {self.std_px:.3f} px, stated are "
-            f"{self.stated_px:.3f}"
-        )
-        if self.consistent:
-            return f"{found}: they agree within {abs(self.sigmas):.1f} standard deviations"
-        side = "narrow" if self.difference_px > 0 else "wide"
-        sure = "probably" if abs(self.sigmas) <= _DOUBTFUL else "almost certainly"
-        gain = float(width_error_gain(self.found_px, self.stated_px, NYQUIST_CPP))
-        return (
-            f"{found}: the stated one, or the GSD, is {sure} too {side} by "
-            f"{abs(self.difference_px):.3f} px ({abs(self.sigmas):.1f} standard deviations); the "
-            f"ratio method would be {100 * (gain - 1):+.1f} % off at Nyquist"
-        )
-
-    def to_dict(self) -> dict[str, float | bool | str]:
-        """Numbers and verdict by name."""
-        return {
-            "stated_px": self.stated_px,
-            "found_px": self.found_px,
-            "std_px": self.std_px,
-            "difference_px": self.difference_px,
-            "sigmas": self.sigmas,
-            "consistent": self.consistent,
-            "verdict": self.verdict,
-        }
-
-
-def width_consistency(fit: SplinePulse, stated_width_px: float) -> WidthConsistency:
-    """Whether a stated width agrees with the one the joint fit found.
-
-    Parameters
-    ----------
-    fit : SplinePulse
-        Fitted with the width free.
-    stated_width_px : float
-        Along the normal.
-
-    Returns
-    -------
-    WidthConsistency
-
-    Raises
-    ------
-    OptionError
-        If the width was held in that fit, so that it has no standard deviation.
-    """
-    if not fit.pulse_width.std > 0:
-        raise OptionError(
-            "the width was held at its stated value and has no standard deviation: fit the pulse "
-            "with fit_width=True"
-        )
-    if not stated_width_px > 0:
-        raise OptionError(f"a pulse has a width of {stated_width_px:g} px: give one above 0")
-    return WidthConsistency(stated_width_px, fit.pulse_width.value, fit.pulse_width.std)
 
 
 @dataclass(frozen=True, eq=False)
@@ -212,8 +105,12 @@ def smoothest_width(
     -------
     WidthSearch
         Noise-free it finds the width to 0.02 px for smooth MTFs of every kind. It has no
-        standard deviation: the joint fit's width has, see
-        `width_consistency`.
+        standard deviation: the joint fit's width has, which the check ``width_sigmas`` compares.
+
+    Raises
+    ------
+    OptionError
+        If there are fewer than three widths, or one is not above 0.
     """
     stated = fit.pulse_width.value
     if widths_px is None:

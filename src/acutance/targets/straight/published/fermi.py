@@ -14,11 +14,11 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from acutance.arguments import require_types
 from acutance.curves import Esf, Lsf, Mtf, Response
 from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError, SupportError
 from acutance.geometry.line import Line
-from acutance.targets.options import require_types
 from acutance.targets.straight.pixels import EdgeFit, EdgePixels
 from acutance.targets.straight.published.fermi_sum import FermiSum
 from acutance.targets.straight.published.resampled_response import (

@@ -13,9 +13,9 @@ from typing import Literal
 
 import numpy as np
 
+from acutance.arguments import require_types
 from acutance.curves.grid import Floats
 from acutance.errors import OptionError, SupportError
-from acutance.targets.options import require_types
 from acutance.targets.straight.pixels import EdgeFit, EdgePixels
 from acutance.targets.straight.published.edge_location import centroid_locations
 from acutance.targets.straight.published.resampled_response import (
@@ -53,6 +53,11 @@ class Iso12233Options:
         Draws of the rows for the standard deviations; 0 gives none.
     seed : int
         Of the generator that draws them.
+
+    Raises
+    ------
+    OptionError
+        If a value is of another kind, or makes no sense.
     """
 
     bins_per_px: int = 4

@@ -14,10 +14,10 @@ from typing import Literal
 
 import numpy as np
 
+from acutance.arguments import require_types
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import RerCentre
 from acutance.errors import NoEdgeError, OptionError, SupportError
-from acutance.targets.options import require_types
 from acutance.targets.straight.pixels import EdgeFit, EdgePixels
 from acutance.targets.straight.published.edge_location import cubic_locations
 from acutance.targets.straight.published.fermi_sum import fit_profile
@@ -67,6 +67,11 @@ class KompsatOptions:
         Draws of the rows for the standard deviations; 0 gives none.
     seed : int
         Of the generator that draws them.
+
+    Raises
+    ------
+    OptionError
+        If a value is of another kind, or makes no sense.
     """
 
     distance: Literal["normal", "as-drafted"] = "normal"

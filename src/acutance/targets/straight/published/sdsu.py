@@ -14,9 +14,9 @@ from typing import Literal
 
 import numpy as np
 
+from acutance.arguments import require_types
 from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError, OptionError, SupportError
-from acutance.targets.options import require_types
 from acutance.targets.straight.pixels import EdgeFit, EdgePixels
 from acutance.targets.straight.published.edge_location import fermi_locations, fermi_sum_locations
 from acutance.targets.straight.published.local_polynomial import modified_savitzky_golay
@@ -72,6 +72,11 @@ class SdsuOptions:
         Draws of the rows for the standard deviations; 0 gives none.
     seed : int
         Of the generator that draws them.
+
+    Raises
+    ------
+    OptionError
+        If a value is of another kind, or makes no sense.
     """
 
     order: Literal[2, 4] = 4

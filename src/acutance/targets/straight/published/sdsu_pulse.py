@@ -14,10 +14,10 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from acutance.arguments import require_types
 from acutance.curves import Esf, Estimate, Lsf, Mtf, Response
 from acutance.curves.grid import Floats, crossing
 from acutance.errors import NoEdgeError, OptionError, SupportError
-from acutance.targets.options import require_types
 from acutance.targets.straight.fit_pulse import PulsePixels
 from acutance.targets.straight.pixels import EdgeFit
 from acutance.targets.straight.published.edge_location import fermi_locations
@@ -71,6 +71,11 @@ class SdsuPulseOptions:
         Draws of the rows for the standard deviations; 0 gives none.
     seed : int
         Of the generator that draws them.
+
+    Raises
+    ------
+    OptionError
+        If a value is of another kind, or makes no sense.
     """
 
     order: Literal[2, 4] = 2
