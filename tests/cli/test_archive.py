@@ -108,6 +108,20 @@ def test_stac_is_no_file(refused, campaign, tmp_path):
     assert not out.exists()
 
 
+@pytest.mark.parametrize("ending", ["jsonl", "ndjson", "parquet", "CSV"])
+def test_the_ending_names_the_format(acutance, refused, campaign, tmp_path, ending):
+    out = tmp_path / f"out.{ending}"
+    assert acutance("archive", "export", campaign, out).exit_code == 0
+    word = {"ndjson": "jsonl"}.get(ending, ending.lower())
+    stated = tmp_path / f"stated.{ending}"
+    assert acutance("archive", "export", campaign, stated, "--to", word).exit_code == 0
+    assert out.read_bytes() == stated.read_bytes()
+    refused(
+        ("archive", "export", campaign, tmp_path / "folder"),
+        "state the format (--to; of a folder stac)",
+    )
+
+
 @pytest.mark.parametrize("to", ["jsonl", "parquet", "csv", "stac"])
 def test_exports_are_imported(acutance, campaign, tmp_path, to):
     out = tmp_path / (to if to == "stac" else f"out.{to}")

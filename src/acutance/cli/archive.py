@@ -41,7 +41,7 @@ EXAMPLE = (
     "\b\nExamples:\n"
     "  acutance archive import campaign.db results/*.json --sensor QB02\n"
     "  acutance archive list campaign.db --sensor QB02 --band pan --since 2026-01-01\n"
-    "  acutance archive export campaign.db all.parquet --to parquet"
+    "  acutance archive export campaign.db all.parquet"
 )
 LIST_EXAMPLE = (
     "\b\nExamples:\n"
@@ -57,8 +57,8 @@ IMPORT_EXAMPLE = (
 )
 EXPORT_EXAMPLE = (
     "\b\nExamples:\n"
-    "  acutance archive export campaign.db all.jsonl --to jsonl\n"
-    "  acutance archive export campaign.db table.csv --to csv --sensor QB02\n"
+    "  acutance archive export campaign.db all.jsonl\n"
+    "  acutance archive export campaign.db table.csv --sensor QB02\n"
     "  acutance archive export campaign.db catalogue --to stac --since 2026-01-01"
 )
 INFO_EXAMPLE = "\b\nExample:\n  acutance archive info campaign.db --json"
@@ -213,6 +213,16 @@ def import_documents(
 app.command("import", epilog=IMPORT_EXAMPLE)(import_documents)
 
 
+def _format_of(out: str) -> str:
+    """The format that the ending of a file names; a folder may be of any."""
+    ending = Path(out).suffix.lower()
+    for name, endings in _ENDINGS.items():
+        if ending in endings:
+            return name
+    known = ", ".join(one for endings in _ENDINGS.values() for one in endings)
+    raise OptionError(f"{out} ends in none of {known}: state the format (--to; of a folder stac)")
+
+
 @app.command("export", epilog=EXPORT_EXAMPLE)
 @with_groups
 def export(
@@ -222,13 +232,13 @@ def export(
         str, typer.Argument(metavar="OUT", help="A file; of stac a folder that is new or empty.")
     ],
     to: Annotated[
-        str,
+        str | None,
         typer.Option(
             metavar="FORMAT",
             help="jsonl and parquet lose nothing, nor does stac of images with dates, which it "
-            "needs; csv has the numbers without curves.",
+            "needs; csv has the numbers without curves. That of OUT's ending without it.",
         ),
-    ],
+    ] = None,
     documents: Annotated[
         bool,
         typer.Option(
@@ -238,6 +248,7 @@ def export(
     selected: SelectionOptions,
 ) -> None:
     """Write measurements and rejections into a file, for other programs or other archives."""
+    to = _format_of(out) if to is None else to
     if documents and to != "csv":
         raise OptionError(f"--documents belongs to --to csv: {to} has them in any case")
     if to not in (*_ENDINGS, "stac"):
