@@ -6,11 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from periodic_scenes import CYCLES, FREQ, STATED, errors_of, measured_star, star_scene
+from scipy.ndimage import zoom
 
 import acutance as ac
 from acutance.errors import NoStarError, OptionError, RegionError
 from acutance.raster import Gsd, Image
 from acutance.simulate import Noise, reference_systems
+from acutance.targets import QUESTIONS
 from acutance.targets.periodic import StarOptions, measure_star
 
 
@@ -195,6 +197,14 @@ def test_cycles_are_counted_or_refused():
         measure_star(image, cycles=30)
     with pytest.raises(OptionError, match="3 cycles"):
         measure_star(image, cycles=3)
+
+
+def test_a_star_seen_aslant_is_refused_with_a_word_for_it():
+    """Its rings show too few cycles, or a harmonic that no wave has: neither is the reason."""
+    image, _ = star_scene()
+    with pytest.raises(NoStarError, match=r"slanted view or pixels that are not square"):
+        measure_star(zoom(image, (0.8, 1.0)), cycles=CYCLES)
+    assert "slanted view" in QUESTIONS["wave"].advice
 
 
 @pytest.mark.parametrize("part", ["whole", "three quarters"])
