@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import acutance as ac
+from acutance.archive.requirement_answers import Answer, SpecificationCheck
 from acutance.archive.specification import Requirement, Specification, read_specification
 from acutance.archive.specification_check import check_requirement
 from acutance.archive.trends import Series
@@ -228,3 +229,20 @@ def test_a_number_is_no_text(tmp_path: Path, key: str, value: str) -> None:
     path.write_text("\n".join(["[[requirement]]", *map(" = ".join, lines.items())]))
     with pytest.raises(ac.OptionError, match=rf"requirement 1, {key}: input should be a .*number"):
         read_specification(path)
+
+
+def test_a_note_that_several_answers_have_stands_once() -> None:
+    across, along = (
+        Answer(at_least(0.09), f"S1, {name}", "met", 0.99, ac.Estimate(0.1, 0.001), None, 9, 0,
+               reason="A season.", notes=("No band is named.", f"Only {name}."))
+        for name in ("across", "along")
+    )  # fmt: skip
+    assert across.summary.endswith("9 images. A season. No band is named. Only across.")
+    assert across.judgement.endswith("9 images. A season.")
+    assert across.to_dict()["notes"] == ["No band is named.", "Only across."]
+    unread = Answer(at_least(0.09), "S1", "cannot be told yet", None, None, None, 0, 3, "no image")
+    assert SpecificationCheck("", (across, along, unread)).notes == (
+        "No band is named.",
+        "S1, across, mtf_nyquist: Only across.",
+        "S1, along, mtf_nyquist: Only along.",
+    )

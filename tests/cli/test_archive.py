@@ -108,6 +108,20 @@ def test_stac_is_no_file(refused, campaign, tmp_path):
     assert not out.exists()
 
 
+@pytest.mark.parametrize("ending", ["jsonl", "ndjson", "parquet", "CSV"])
+def test_the_ending_names_the_format(acutance, refused, campaign, tmp_path, ending):
+    out = tmp_path / f"out.{ending}"
+    assert acutance("archive", "export", campaign, out).exit_code == 0
+    word = {"ndjson": "jsonl"}.get(ending, ending.lower())
+    stated = tmp_path / f"stated.{ending}"
+    assert acutance("archive", "export", campaign, stated, "--to", word).exit_code == 0
+    assert out.read_bytes() == stated.read_bytes()
+    refused(
+        ("archive", "export", campaign, tmp_path / "folder"),
+        "state the format (--to; of a folder stac)",
+    )
+
+
 @pytest.mark.parametrize("to", ["jsonl", "parquet", "csv", "stac"])
 def test_exports_are_imported(acutance, campaign, tmp_path, to):
     out = tmp_path / (to if to == "stac" else f"out.{to}")
@@ -119,17 +133,6 @@ def test_exports_are_imported(acutance, campaign, tmp_path, to):
     counts = json.loads(acutance("archive", "info", tmp_path / "again.db", "--json").stdout)
     assert (counts["measured"], counts["rejected"], counts["schema_version"]) == (2, 0, 2)
     assert [one["sensor"] for one in counts["sensors"]] == ["K3", "QB02"]
-
-
-def test_the_ending_of_a_file_says_its_format(acutance, refused, campaign, tmp_path):
-    named, stated = tmp_path / "named.jsonl", tmp_path / "stated.jsonl"
-    assert acutance("archive", "export", campaign, named).exit_code == 0
-    assert acutance("archive", "export", campaign, stated, "--to", "jsonl").exit_code == 0
-    assert named.read_bytes() == stated.read_bytes()
-    words = ("archive", "export", campaign, tmp_path / "catalogue")
-    refused(
-        words, "names no format by its ending (.jsonl, .ndjson, .parquet, .csv): state it, --to"
-    )
 
 
 @pytest.mark.parametrize(

@@ -36,6 +36,14 @@ def test_a_trend_as_json_is_read_back(acutance, place):
     assert Trend.from_dict(document).images.images == 12
 
 
+def test_what_is_to_know_of_the_images_stands_once_below_the_answers(acutance, place, tmp_path):
+    spec = spec_file(tmp_path, "minimum = 0.35", "minimum = 0.36")
+    done = acutance("archive", "check", place, "--spec", spec, "--sensor", "KOMPSAT-3")
+    assert done.stdout.count("is met (") == 4
+    assert done.stdout.count("No band is named") == 1
+    assert "\nnote: No band is named" in done.stdout
+
+
 def test_what_is_no_series_is_refused(acutance, place):
     done = acutance("archive", "trend", place, "--metric", "rer")
     assert done.exit_code == 2

@@ -3,8 +3,11 @@
 import csv as csv_format
 import io
 
+import numpy as np
 import pytest
 
+from acutance import BarsOptions, measure_bars, simulate
+from acutance.optics import Detector, Gaussian, Sensor
 from acutance.report import csv
 
 
@@ -41,3 +44,19 @@ def test_many_measurements_are_told_apart(measurement, vague_measurement):
     assert rows[0]["method"] == "spline"
     assert "freq_cpm" not in rows[0]
     assert "freq_cpm" in read(csv([measurement, measurement]))[0]
+
+
+@pytest.fixture(scope="module")
+def bars():
+    """Two groups of bars of one direction: they show the sensor across track alone."""
+    sensor = Sensor([Gaussian(0.4), Detector(1.0)])
+    image, _ = simulate.bars(
+        sensor, periods_px=(6, 3), count=3, angle_deg=6, snr=100, rng=np.random.default_rng(1)
+    )
+    return measure_bars(image, options=BarsOptions(count=3))
+
+
+def test_a_direction_that_bars_do_not_show_has_no_rows(bars):
+    assert bars.measured_directions == ("across",)
+    assert {row["direction"] for row in read(csv(bars))} == {"across", "normal"}
+    assert {row["orientation"] for row in read(csv([bars, bars]))} == {"across"}

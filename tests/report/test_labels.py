@@ -13,6 +13,7 @@ from acutance.curves.metric_words import METRIC_WORDS, metric_words
 from acutance.report import page, text
 from acutance.report.labels import (
     describe_image,
+    describe_target,
     flatten_options,
     format_number,
     shorten_name,
@@ -127,3 +128,12 @@ def test_a_centre_that_nobody_stated_is_that_of_the_method():
             assert "RER centre" not in shown(one)
         for one in (draft, draft.record):
             assert "RER centre the LSF's peak" in shown(one)
+
+
+def test_one_source_is_no_sources():
+    sensor = ac.Sensor([ac.optics.Gaussian(0.4), ac.optics.Detector()])
+    noise = np.random.default_rng(3)
+    image, truth = simulate.points(sensor, snr=100, rng=noise)
+    one = ac.measure_points(image, positions=truth.positions[:1])
+    assert describe_target(one).startswith("1 source, SNR")
+    assert describe_target(ac.measure_points(image)).startswith("20 sources, SNR")

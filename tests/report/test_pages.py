@@ -235,3 +235,12 @@ def test_several_measurements_show_their_tables_in_notebooks(few_forms):
         bands = acutance.scan_bands(images)
     shown = words(bands._repr_html_())
     assert all(f"{scene.along.rer}" in shown for scene in bands.measurements)
+
+
+def test_on_paper_the_result_begins_on_the_first_sheet(measurement):
+    """As one block that keeps together, numbers and drawings left the first sheet empty."""
+    (printed,) = re.findall(r"@media print \{(.+?)\n\}", page(measurement), re.DOTALL)
+    (kept,) = re.findall(r"([^{}\n]+) \{ break-inside: avoid; \}", printed)
+    assert ".side" not in kept
+    assert "figure" in kept
+    assert ".side > div:not(.plates) { display: contents; }" in printed

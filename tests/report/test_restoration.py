@@ -176,3 +176,13 @@ def test_a_proof_has_what_the_filter_was_designed_for():
     shown = proof_text(ac.verify_restoration(before, after, filter, [(10, 10, 80, 80)]))
     assert "designed for" in shown.splitlines()[1]
     assert f"{np.exp(-2 * (np.pi * 0.5 * 0.5) ** 2) * np.sinc(0.5):.3f}" in shown
+
+
+def test_what_is_called_an_overshoot_is_one(sharpening):
+    """The largest of both may be an undershoot, of which the table has another number."""
+    page = restoration_page(sharpening)
+    worst = f"{100 * sharpening.after.overshoot.value:.1f}"
+    label = '<div class="label">Largest over- or undershoot</div>'
+    assert f'{label}<div class="value">{worst} ' in page
+    (trade,) = (one for one in restoration_tables(sharpening) if one.title == "The trade")
+    assert trade.columns[3] == "Over- or undershoot [%]"

@@ -37,6 +37,8 @@ class Answer:
         Where the day asked is before the first or after the last image: the day of that image.
     reason : str
         Why it cannot be told, or what to know of it.
+    notes : tuple of str
+        What to know of the images that were judged; other answers may have the same.
     """
 
     requirement: Requirement
@@ -49,10 +51,16 @@ class Answer:
     more_images: int | None
     reason: str = ""
     nearest: datetime.date | None = None
+    notes: tuple[str, ...] = ()
 
     @property
     def summary(self) -> str:
-        """The answer in a sentence."""
+        """The answer, and what to know of the images that were judged."""
+        return " ".join((self.judgement, *self.notes))
+
+    @property
+    def judgement(self) -> str:
+        """The answer alone, where the notes of several answers stand elsewhere."""
         what = f"{self.what}: " if self.what else ""
         asked = self.requirement.sentence
         if self.mean is None or self.probability is None:
@@ -82,6 +90,11 @@ class Answer:
         count = self.more_images
         return f"About {counted(count, 'more image')} would tell."
 
+    @property
+    def name(self) -> str:
+        """Whose requirement it is, and of which number: "QB02, across, mtf_nyquist"."""
+        return ", ".join(filter(None, (self.what, self.requirement.metric)))
+
     def to_dict(self) -> dict[str, Any]:
         """All fields for JSON; the requirement as it was written."""
         return {
@@ -94,6 +107,7 @@ class Answer:
             "images": self.images,
             "more_images": self.more_images,
             "nearest": None if self.nearest is None else self.nearest.isoformat(),
+            "notes": list(self.notes),
             "summary": self.summary,
         }
 
@@ -120,6 +134,19 @@ class SpecificationCheck:
         if NOT_MET in words:
             return NOT_MET
         return MET if words == {MET} else OPEN
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """The notes of all answers, each once, with whose it is unless it is of all."""
+        judged = [answer for answer in self.answers if answer.mean is not None]
+        whose: dict[str, list[str]] = {}
+        for answer in judged:
+            for note in answer.notes:
+                whose.setdefault(note, []).append(answer.name)
+        return tuple(
+            note if len(names) == len(judged) else f"{'; '.join(names)}: {note}"
+            for note, names in whose.items()
+        )
 
     @property
     def summary(self) -> str:

@@ -201,10 +201,9 @@ def _by_trend(requirement: Requirement, trend: Trend) -> Answer:
     found = _answer(
         requirement, trend.name, met, mean, date_of(year), trend.images.images, square * lost,
         float(np.hypot(trend.images.systematic_std, posterior.targets_std)),
-        " ".join(filter(None, (
-            season_words(trend), *_skewed(requirement, mean, below, trend), *trend.notes
-        ))),
+        " ".join(filter(None, (season_words(trend), *_skewed(requirement, mean, below, trend)))),
     )  # fmt: skip
+    found = replace(found, notes=trend.notes)
     nearest = date_of(min(max(year, first), last))
     if found.word != OPEN or found.day is None or nearest == found.day:
         return found

@@ -41,7 +41,7 @@ EXAMPLE = (
     "\b\nExamples:\n"
     "  acutance archive import campaign.db results/*.json --sensor QB02\n"
     "  acutance archive list campaign.db --sensor QB02 --band pan --since 2026-01-01\n"
-    "  acutance archive export campaign.db all.parquet --to parquet"
+    "  acutance archive export campaign.db all.parquet"
 )
 LIST_EXAMPLE = (
     "\b\nExamples:\n"
@@ -57,8 +57,8 @@ IMPORT_EXAMPLE = (
 )
 EXPORT_EXAMPLE = (
     "\b\nExamples:\n"
-    "  acutance archive export campaign.db all.jsonl --to jsonl\n"
-    "  acutance archive export campaign.db table.csv --to csv --sensor QB02\n"
+    "  acutance archive export campaign.db all.jsonl\n"
+    "  acutance archive export campaign.db table.csv --sensor QB02\n"
     "  acutance archive export campaign.db catalogue --to stac --since 2026-01-01"
 )
 INFO_EXAMPLE = "\b\nExample:\n  acutance archive info campaign.db --json"
@@ -213,6 +213,16 @@ def import_documents(
 app.command("import", epilog=IMPORT_EXAMPLE)(import_documents)
 
 
+def _format_of(out: str) -> str:
+    """The format that the ending of a file names; a folder may be of any."""
+    ending = Path(out).suffix.lower()
+    for name, endings in _ENDINGS.items():
+        if ending in endings:
+            return name
+    known = ", ".join(one for endings in _ENDINGS.values() for one in endings)
+    raise OptionError(f"{out} ends in none of {known}: state the format (--to; of a folder stac)")
+
+
 @app.command("export", epilog=EXPORT_EXAMPLE)
 @with_groups
 def export(
@@ -289,18 +299,6 @@ def info(place: PlaceArgument, as_json: JsonOption = False) -> None:
         f"{counted(found.runs, 'run')}; tables of version {found.schema_version}"
     )
     print_sensors(found.sensors)
-
-
-def _format_of(out: str) -> str:
-    """The format that a file's name says."""
-    ending = Path(out).suffix.lower()
-    for name, endings in _ENDINGS.items():
-        if ending in endings:
-            return name
-    raise OptionError(
-        f"OUT {out} names no format by its ending ({', '.join(sum(_ENDINGS.values(), ()))}): "
-        f"state it, --to {', '.join(_ENDINGS)} or stac"
-    )
 
 
 def _undated(entries: Iterable[Entry]) -> str:

@@ -51,7 +51,9 @@ def check(
     else:
         for answer in found.answers:
             name = answer.requirement.name
-            typer.echo(f"{f'{name}: ' if name else ''}{answer.summary}")
+            typer.echo(f"{f'{name}: ' if name else ''}{answer.judgement}")
+        if found.notes:
+            typer.echo("\n" + "\n".join(f"note: {note}" for note in found.notes))
         typer.echo(f"\n{found.summary}")
     if found.word == "not met" or (strict and found.word != "met"):
         raise typer.Exit(FAILED_CHECK)

@@ -10,5 +10,6 @@
 - clipping: pixels at the end of the scale; repeated_pixels, jpeg_blocks, periodic_noise: what
   resampling and compression left of them (pixel_steps: the step of their numbers).
 - stacked: complex values as real ones.
-- lookup: cubic interpolation of tables; one_thread: linear algebra of many small matrices.
+- lookup: cubic interpolation of tables; bessel_table: Bessel functions of many orders;
+  one_thread: linear algebra of many small matrices.
 """

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from acutance.curves import Mtf
+from acutance.curves import Mtf, Response
 from acutance.report.comparison import Comparison, Result, as_result
 from acutance.report.labels import csv_column
 from acutance.report.tables.measurement import mtf_freqs_cpp
@@ -22,8 +22,9 @@ def csv(result: Result) -> str:
 
     Columns are freq_cpp, mtf, std, low95, high95, and freq_cpm (cycles per metre) where the GSD
     is known. Before them stands the direction, if the result has more than one: "across",
-    "along", of bars also "normal", of a star "mean". Of several measurements the first columns
-    are the number, the method and the direction. A ratio of two sensors' MTFs is called
+    "along", of bars also "normal", of a star "mean". A direction that the target does not show
+    (along, of bars across) is left out, as in text and page. Of several measurements the first
+    columns are the number, the method and the direction. A ratio of two sensors' MTFs is called
     mtf_low_over_mtf_high.
 
     Parameters
@@ -45,9 +46,9 @@ def csv(result: Result) -> str:
 
 
 def _curves(measurement: Measurement) -> dict[str, tuple[Mtf, float | None]]:
-    """The MTFs of a measurement by direction, with the GSD along each."""
+    """The MTFs of a measurement by measured direction, with the GSD along each."""
     found: dict[str, tuple[Mtf, float | None]] = {
-        name: (one.mtf, one.gsd_m) for name, one in measurement.directions.items()
+        name: (one.mtf, one.gsd_m) for name, one in _measured(measurement)
     }
     # Bars and stars have one curve more.
     normal, mean = (getattr(measurement, name, None) for name in ("normal_response", "mean_mtf"))
@@ -58,14 +59,20 @@ def _curves(measurement: Measurement) -> dict[str, tuple[Mtf, float | None]]:
     return found
 
 
+def _measured(measurement: Measurement) -> Iterator[tuple[str, Response]]:
+    """The directions that the target shows: a table has no words for one that it does not."""
+    for name in measurement.measured_directions:
+        yield name, measurement.directions[name]
+
+
 def _csv_of_many(measurements: Sequence[Measurement]) -> str:
     """Several measurements in one table; freq_cpm where all of them know their GSD."""
-    gsds = [one.gsd_m for each in measurements for one in each.directions.values()]
+    gsds = [one.gsd_m for each in measurements for _, one in _measured(each)]
     in_metres = None not in gsds
     first = measurements[0]
     lines = [",".join((first.kind, "method", "orientation", *_columns(first, in_metres)))]
     for number, measurement in enumerate(measurements, start=1):
-        for direction, response in measurement.directions.items():
+        for direction, response in _measured(measurement):
             start = (str(number), measurement.method, direction)
             lines += [
                 ",".join((*start, *cells))

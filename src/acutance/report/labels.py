@@ -47,7 +47,7 @@ KIND_WORDS = {
     "bars": "Groups of bars", "star": "Siemens star", "combined": "Measurements combined",
     "scene": "Edges of a scene",
 }  # fmt: skip
-_COUNTED = {"sources": "sources", "groups": "groups", "parts": "measurements"}
+_COUNTED = {"sources": "source", "groups": "group", "parts": "measurement"}
 """What kinds consist of, by the names of their fields."""
 _METHOD_WORDS = {
     "joint": "one fit of all pixels",
@@ -200,11 +200,10 @@ def describe_target(measurement: Measurement) -> str:
     line = getattr(measurement, "line", None)
     if line is not None:
         parts += _line_words(measurement)
-    parts += [
-        f"{len(getattr(measurement, name))} {words}"
-        for name, words in _COUNTED.items()
-        if hasattr(measurement, name)
-    ]
+    for name, word in _COUNTED.items():
+        count = len(getattr(measurement, name, ()))
+        if hasattr(measurement, name):
+            parts.append(f"{count} {word}{'' if count == 1 else 's'}")
     if measurement.is_ratio:
         parts.append(f"{_RATIO} (not the low sensor's own MTF)")
     edges = getattr(measurement, "edges", None)

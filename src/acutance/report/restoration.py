@@ -107,7 +107,7 @@ def _title(filter: RestorationFilter) -> str:
 
 
 def _headlines(filter: RestorationFilter) -> tuple[Headline, ...]:
-    """MTF at Nyquist of both directions, noise gain, overshoot, NIIRS."""
+    """MTF at Nyquist of both directions, noise gain, largest overshoot, NIIRS."""
     cards = []
     for name, after in filter.after.directions.items():
         before = filter.before.directions[name].mtf_nyquist
@@ -121,7 +121,8 @@ def _headlines(filter: RestorationFilter) -> tuple[Headline, ...]:
     snr = () if filter.snr is None else (f"SNR {filter.snr:.3g} → {filter.snr_after:.3g}",)
     cards.append(Headline("Noise gain", f"{filter.noise_gain:.2f}", details=snr))
     value, details = _value_and_details(100 * filter.after.overshoot, 1)
-    cards.append(Headline("Overshoot", value, "%", details=details))
+    # Undershoot may be the larger one: under "overshoot" the table had another number.
+    cards.append(Headline("Largest over- or undershoot", value, "%", details=details))
     if filter.niirs_change:
         change = filter.niirs_change[4]
         shown = f"{change.value:+.2f}".replace("-", "−")

@@ -307,8 +307,9 @@ _PERIODIC = {
     "wave": Question(
         "Which share of the contrast is a third harmonic that the stated wave does not have?",
         "<=", 0.01,
-        "the star may be a square wave instead of a sine, or the other way round, or bright and "
-        "dark spokes may not be equally wide", severity="fail",
+        "the star may be a square wave instead of a sine, or the other way round, bright and dark "
+        "spokes may not be equally wide, or a slanted view or pixels that are not square make an "
+        "ellipse of it", severity="fail",
     ),
 }  # fmt: skip
 

@@ -131,15 +131,16 @@ def test_a_target_that_takes_over_is_no_step_of_the_sensor() -> None:
     assert change.relative_size.value == pytest.approx(0.1, abs=0.03)
 
 
-def test_images_are_told_as_the_mean_of_all_targets_would_have_them() -> None:
+def test_images_are_those_that_the_mean_of_all_targets_would_have() -> None:
     series = steady("random", 6)
     spread = np.std(fit_trend(replace(series, target=None)).images.value)
     trend = fit_trend(series)
     assert np.std(trend.images.value) < 0.75 * spread
     assert trend.notes == (
-        "The images are of 4 targets, which differ by about "
+        "The images show 4 targets, which differ by about "
         f"{100 * trend.posterior.target_std / trend.posterior.unit:.2g} % (standard deviation): "
-        "the level is that of so many, and images are told as the mean of them would have them.",
+        "the level is the mean of these, with an interval that allows for how few they are, and "
+        "what is peculiar to a target is taken out of its images.",
     )
     again = Trend.from_dict(trend.to_dict())
     assert again.level == trend.level

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import re
+import tomllib
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
@@ -241,6 +242,16 @@ def test_requirements_come_first(archive, tmp_path):
     assert '<div class="verdict good"><p>across track' in page
     assert '<div class="verdict invalid"><p>sharp' in page
     assert "More images: how many would tell" in page
+
+
+def test_notes_of_a_state_are_not_repeated_by_the_answers_above_it(archive, tmp_path):
+    spec = tmp_path / "spec.toml"
+    spec.write_text(SPEC, encoding="utf-8")
+    checked = archive.check(Specification.of(tomllib.loads(SPEC)))
+    page = words_of(sensor_page(archive, "QB02", specification=spec))
+    (note,) = checked.answers[0].notes
+    assert note.startswith("The images show 2 targets")
+    assert page.count("The images show 2 targets") == 1
 
 
 def test_the_table_of_a_specification_has_the_words_of_its_sentences(archive):

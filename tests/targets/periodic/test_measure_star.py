@@ -6,11 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from periodic_scenes import CYCLES, FREQ, STATED, errors_of, measured_star, star_scene
+from scipy.ndimage import zoom
 
 import acutance as ac
 from acutance.errors import NoStarError, OptionError, RegionError
 from acutance.raster import Gsd, Image
 from acutance.simulate import Noise, reference_systems
+from acutance.targets import QUESTIONS
 from acutance.targets.periodic import StarOptions, measure_star
 
 
@@ -197,6 +199,14 @@ def test_cycles_are_counted_or_refused():
         measure_star(image, cycles=3)
 
 
+def test_a_star_seen_aslant_is_refused_with_a_word_for_it():
+    """Its rings show too few cycles, or a harmonic that no wave has: neither is the reason."""
+    image, _ = star_scene()
+    with pytest.raises(NoStarError, match=r"slanted view or pixels that are not square"):
+        measure_star(zoom(image, (0.8, 1.0)), cycles=CYCLES)
+    assert "slanted view" in QUESTIONS["wave"].advice
+
+
 @pytest.mark.parametrize("part", ["whole", "three quarters"])
 @pytest.mark.parametrize("off", [-2, -1, 1, 2])
 def test_a_number_of_cycles_next_to_the_true_one_is_refused(part, off):
@@ -264,7 +274,8 @@ def test_clipped_star_fails_by_name():
 def test_a_sine_star_taken_for_a_square_one_is_refused(seed):
     sensor = ac.Sensor([ac.optics.Gaussian(0.4), ac.optics.Detector()])
     image, _ = ac.simulate.star(sensor, snr=100, rng=np.random.default_rng(seed))
-    with pytest.raises(NoStarError, match=r"--wave sine|did not settle"):
+    said = r"square star of 36 cycles .*--wave sine.*state it \(cycles, --cycles\)|did not settle"
+    with pytest.raises(NoStarError, match=said):
         measure_star(image, options=StarOptions(wave="square"))
 
 

@@ -60,7 +60,7 @@ def fit_trend(series: Series, events: Sequence[Event] = ()) -> Trend:
     ordered = tuple(sorted((*events, *changes), key=lambda event: event.year))
     design = Design(float(images.when.mean()), ordered)
     posterior, added = trend_posterior(images, design, effects)
-    # Images are told as the mean of all targets would have them.
+    # Images as the mean of all targets would have them.
     images = replace(images, value=images.value - added)
     return Trend(
         metric=series.metric, name=series.name, measurements=dated.size, images=images,
@@ -101,9 +101,9 @@ def _targets(effects: TargetEffects, posterior: TrendPosterior) -> tuple[str, ..
     )  # fmt: skip
     share = posterior.target_std / posterior.unit
     notes = [
-        f"The images are of {words}, which differ by about {100 * share:.2g} % (standard "
-        "deviation): the level is that of so many, and images are told as the mean of them would "
-        "have them."
+        f"The images show {words}, which differ by about {100 * share:.2g} % (standard "
+        "deviation): the level is the mean of these, with an interval that allows for how few "
+        "they are, and what is peculiar to a target is taken out of its images."
     ]
     if effects.in_turn:
         notes.append(

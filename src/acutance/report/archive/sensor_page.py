@@ -144,7 +144,7 @@ def _answer_sections(
     nothing = [Verdict("usable", f"{unasked[:1].upper()}{unasked[1:]}.")] if unasked else []
     verdicts = (
         *nothing,
-        *map(_answer_verdict, answers),
+        *(_answer_verdict(answer, states) for answer in answers),
         *map(_state_verdict, states),
         *(Verdict("usable", sentence) for sentence in comparisons.sentences),
     )
@@ -154,9 +154,12 @@ def _answer_sections(
     return [Section("Result", verdicts=verdicts), *map(Section.of_table, tables)]
 
 
-def _answer_verdict(answer: Answer) -> Verdict:
+def _answer_verdict(answer: Answer, states: Sequence[SeriesState]) -> Verdict:
+    """An answer, with those notes that the states below do not have."""
     name = f"{answer.requirement.name}: " if answer.requirement.name else ""
-    return Verdict(_ANSWERS[answer.word], f"{name}{answer.summary}")
+    told = {note for state in states for note in state.notes}
+    notes = tuple(("note", with_minus(note)) for note in answer.notes if note not in told)
+    return Verdict(_ANSWERS[answer.word], f"{name}{answer.judgement}", notes)
 
 
 def _state_verdict(state: SeriesState) -> Verdict:

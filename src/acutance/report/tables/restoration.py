@@ -123,9 +123,11 @@ def _trade(filter: RestorationFilter) -> Table:
         for row in filter.trade
     )
     return Table(
-        ("Noise gain", "MTF at Nyquist across", "along", "Overshoot [%]", "NIIRS (GIQE 4)"), rows,
+        ("Noise gain", "MTF at Nyquist across", "along", "Over- or undershoot [%]",
+         "Change of NIIRS, GIQE 4"), rows,
         "rrrrr", title="The trade", page_only=True,
-        notes=("What other kernels of this size and kind would give for their noise.",),
+        notes=("What other kernels of this size and kind would give for their noise. Of overshoot "
+               "and undershoot, across and along, the largest.",),
     )  # fmt: skip
 
 

@@ -133,9 +133,10 @@ def _require_spokes(solved: StarSolution, rings: Rings, wave: Wave) -> None:
         other = "sine" if wave == "square" else "square"
         raise NoStarError(
             f"the image's spokes have an amplitude of {largest:.4g}, and those of the fitted "
-            f"{wave} star {Estimate(level, solved.otf.level_std)}: no sensor makes the one of "
-            f"the other. The spokes may be a {other} wave (--wave {other}), or have another number "
-            "of cycles"
+            f"{wave} star of {solved.star.cycles} cycles {Estimate(level, solved.otf.level_std)}: "
+            f"no sensor makes the one of the other. The spokes may be a {other} wave (--wave "
+            f"{other}), or have another number of cycles: count them by eye, and state it "
+            "(cycles, --cycles)"
         )
 
 

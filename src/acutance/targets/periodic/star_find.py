@@ -201,7 +201,8 @@ def _require_count(
     shown = f"the rings show {best.cycles}" if strength > MIN_STAR_STRENGTH else "no number fits"
     raise NoStarError(
         f"a star of {start.cycles} cycles was asked for, but about row {best.row:.1f}, column "
-        f"{best.col:.1f} {shown}: check the number of cycles and the region"
+        f"{best.col:.1f} {shown}: check the number of cycles and the region, and whether a slanted "
+        "view or pixels that are not square make an ellipse of the star"
     )
 
 

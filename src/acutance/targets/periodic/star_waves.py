@@ -14,15 +14,15 @@ is the sum of its odd harmonics, each a star of n k cycles.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Final, Literal
 
 import numpy as np
-from scipy.special import jv
 
 from acutance.curves.grid import Floats
+from acutance.numerics.bessel_table import bessel_table
 from acutance.numerics.lookup import CubicLookup
 from acutance.numerics.otf_modes import (
     HIGHEST_CPP,
@@ -44,6 +44,8 @@ _BESSEL_REACH: Final = 64.0
 _DIRECTIONS: Final = 64
 _COARSE_PX: Final = 0.1
 _COARSE_CPP: Final = 1.5
+_TOGETHER: Final = 8
+"""Harmonics whose Bessel functions are tabled at once: a star of few spokes has dozens."""
 _BLUR_ORDERS: Final = 12
 """Of a Gaussian through a pixel alone: beyond, its transfer is below .005."""
 
@@ -98,11 +100,10 @@ class StarTable:
         mean = _angular_parts(self.mean.modes, self._freq)
         radial = [states.radial(m, self._freq) for m in range(states.orders + 1)]
         found = []
-        for number, share in _harmonics_of(self.wave, self.cycles, self.rim_px):
+        for number, share, weights in _weights_of_harmonics(
+            self.wave, self.cycles, self.rim_px, states.orders, self._radii, self._freq
+        ):
             tables: tuple[dict[int, Complexes], dict[int, Floats]] = ({}, {})
-            weights = _weights(
-                self._radii, self._freq, number * self.cycles, self.rim_px, states.orders
-            )
             for m, weight in weights:
                 tables[0][m] = weight @ mean[:, :, m % _DIRECTIONS]
                 tables[1][m] = weight @ radial[abs(m)]
@@ -192,8 +193,9 @@ class BlurredStar:
         freq = np.asarray(step * np.arange(1, math.ceil(_COARSE_CPP / step)))
         otf = _angular_parts(lambda u, v: self.blur.otf(u, v)[:, None].astype(complex), freq)
         found = []
-        for number, share in _harmonics_of(self.wave, self.cycles, self.rim_px):
-            weights = _weights(self._radii, freq, number * self.cycles, self.rim_px, _BLUR_ORDERS)
+        for number, share, weights in _weights_of_harmonics(
+            self.wave, self.cycles, self.rim_px, _BLUR_ORDERS, self._radii, freq
+        ):
             # It looks the same from opposite directions.
             even = {m: w @ otf[:, :, m % _DIRECTIONS] for m, w in weights if m % 2 == 0}
             found.append((number, share, even))
@@ -208,20 +210,34 @@ def _harmonics_of(wave: Wave, cycles: int, rim_px: float) -> list[tuple[int, flo
     return [(n, (-1.0) ** index / n) for index, n in enumerate(range(1, highest + 1, 2))]
 
 
-def _weights(
-    radii: Floats, freq: Floats, cycles: int, rim_px: float, orders: int
-) -> Iterator[tuple[int, Floats]]:
-    """The integral's weights (n_r, n_f) for every angular order, highest first."""
+def _weights_of_harmonics(
+    wave: Wave, cycles: int, rim_px: float, orders: int, radii: Floats, freq: Floats
+) -> Iterator[tuple[int, float, Iterator[tuple[int, Floats]]]]:
+    """Number, share and weights of every harmonic, whose angular orders are consumed in turn."""
+    harmonics = _harmonics_of(wave, cycles, rim_px)
     reach = _reach(max(float(radii[-1]), rim_px))
+    for first in range(0, len(harmonics), _TOGETHER):
+        some = harmonics[first : first + _TOGETHER]
+        wanted = {n * cycles + extra for n, _ in some for extra in (0, orders, orders + 1)}
+        bessel = _bessel(tuple(sorted(wanted)), reach)
+        for number, share in some:
+            yield number, share, _weights(radii, freq, number * cycles, rim_px, orders, bessel)
+
+
+def _weights(
+    radii: Floats, freq: Floats, cycles: int, rim_px: float, orders: int,
+    bessel: Mapping[int, Floats],
+) -> Iterator[tuple[int, Floats]]:  # fmt: skip
+    """The integral's weights (n_r, n_f) for every angular order, highest first."""
     x = 2 * math.pi * np.outer(radii, freq)
     step = freq[1] - freq[0]
-    weight = cycles * step / freq * _rim(cycles, rim_px, freq)
+    weight = cycles * step / freq * _rim(cycles, rim_px, freq, bessel[cycles])
     place = x / _BESSEL_STEP
     cell = place.astype(np.intp)
     part = place - cell
     above, here = (
         table[cell] * (1 - part) + table[cell + 1] * part
-        for table in (_bessel(cycles + orders + extra, reach) for extra in (1, 0))
+        for table in (bessel[cycles + orders + extra] for extra in (1, 0))
     )
     for m in range(orders, -orders - 1, -1):
         yield m, here * weight
@@ -254,11 +270,10 @@ def _angular_parts(modes_of: Callable[[Floats, Floats], Complexes], freq: Floats
     return np.asarray(np.fft.fft(modes, axis=1).transpose(0, 2, 1) / _DIRECTIONS)
 
 
-def _rim(cycles: int, rim_px: float, freq: Floats) -> Floats:
+def _rim(cycles: int, rim_px: float, freq: Floats, bessel: Floats) -> Floats:
     """Q: the effect of the star's end on its spectrum."""
-    reach = _reach(rim_px)
-    x = _BESSEL_STEP * np.arange(_bessel(cycles, reach).size)
-    integrand = x * _bessel(cycles, reach)
+    x = _BESSEL_STEP * np.arange(bessel.size)
+    integrand = x * bessel
     total = np.concatenate([[0.0], np.cumsum(0.5 * (integrand[1:] + integrand[:-1]))])
     return np.interp(2 * math.pi * rim_px * freq, x, total * _BESSEL_STEP / cycles)
 
@@ -268,10 +283,11 @@ def _reach(radius_px: float) -> float:
     return math.ceil(2 * math.pi * radius_px * HIGHEST_CPP / _BESSEL_REACH) * _BESSEL_REACH
 
 
-@lru_cache(maxsize=32)
-def _bessel(order: int, reach: float) -> Floats:
-    """J of an order at 0, 0.02 ... beyond `reach`."""
-    return np.asarray(jv(order, _BESSEL_STEP * np.arange(math.ceil(reach / _BESSEL_STEP) + 3)))
+@lru_cache(maxsize=4)
+def _bessel(orders: tuple[int, ...], reach: float) -> dict[int, Floats]:
+    """J of some orders at 0, 0.02 ... beyond `reach`."""
+    x = np.asarray(_BESSEL_STEP * np.arange(math.ceil(reach / _BESSEL_STEP) + 3))
+    return dict(zip(orders, bessel_table(orders, x), strict=True))
 
 
 @lru_cache(maxsize=8)
