@@ -39,6 +39,8 @@ SCENE_CHECKS = (
 
 _DIRECTION_DEG = 15.0
 _SIGNIFICANT = 2.0
+_DISAGREE = 0.01
+"""Chance of blurs of parts that scatter by as much, below which they disagree."""
 _DECIMATED = 0.7
 """MTF at Nyquist of images that were decimated three times or more; hardly of sharpened ones."""
 _SEEN = 0.2
@@ -214,7 +216,7 @@ def _axes_differ(across: Mtf, along: Mtf, parts: PartsFit | None, limits: Limits
     """How far the larger of the MTFs across and along surely exceeds the other, relative to it.
 
     At Nyquist, or where both tell more. Borders of one direction that are all soft alike pass for a
-    smear of the sensor; where parts of the scene were compared they would differ.
+    smear of the sensor. Where parts of the scene were compared and agree it is more likely one.
     """
     freq = SLICE_FREQ_CPP[SLICE_FREQ_CPP <= NYQUIST_CPP]
     mean = 0.5 * (across(freq).value + along(freq).value)
@@ -228,7 +230,10 @@ def _axes_differ(across: Mtf, along: Mtf, parts: PartsFit | None, limits: Limits
         found = f"{told}: more by at least {100 * excess:.0f} % (by {sigmas})"
     else:
         found = f"{told}: within {sigmas} they agree"
-    caution = None if parts is None else math.inf
+    agree = parts is not None and parts.upright.p_value > _DISAGREE
+    if parts is not None and not agree and excess > 0:
+        found += "; the parts of the scene disagree about the blur, as soft objects make them"
+    caution = math.inf if agree else None
     return answer("axes_differ", min(excess, MAX_RATIO), found, limits, caution=caution)
 
 
