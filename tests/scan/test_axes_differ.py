@@ -1,9 +1,12 @@
 """A sensor twice as sharp across as along is seldom one: borders of a direction are soft alike."""
 
+import numpy as np
 import pytest
-from bare_ground import check_of_bare_ground
+from bare_ground import bare_ground, check_of_bare_ground
 
+import acutance as ac
 from acutance import optics
+from acutance.simulate import landscape
 
 
 @pytest.mark.parametrize(
@@ -24,3 +27,28 @@ def test_a_scan_says_when_its_axes_surely_differ(smear_px, size_px, word):
         assert "soft alike" in scene.verdict.sentence
     elif word == "usable":
         assert check.value > 0.25
+
+
+def smeared_along(smear_px, seed):
+    """A ninth of a scene whose objects are smeared along track."""
+    blocks = [optics.Gaussian(0.35), optics.Detector(), optics.Smear(smear_px, "along")]
+    image, _ = landscape(
+        optics.Sensor(blocks), shape=(300, 300), snr=100, options=bare_ground(density_per_mpx=120),
+        rng=np.random.default_rng(seed),
+    )  # fmt: skip
+    return image
+
+
+def test_parts_that_disagree_do_not_confirm_a_smear():
+    """Borders of one direction that are soft everywhere, here more and there less, were "usable".
+
+    No smooth surface over the field follows this pattern of parts.
+    """
+    smears = ((2.1, 1.4, 1.4), (1.4, 2.1, 2.1), (2.1, 2.1, 1.4))
+    rows = [[smeared_along(smears[i][j], 30 + 3 * i + j) for j in range(3)] for i in range(3)]
+    scene = ac.scan_scene(np.block(rows))
+    (check,) = (one for one in scene.checks if one.name == "axes_differ")
+    assert check.value > 0.6
+    assert check.severity == "caution"
+    assert scene.verdict.word == "doubtful"
+    assert "parts of the scene disagree" in scene.verdict.sentence

@@ -24,6 +24,7 @@ __all__ = [
     "BLUR_MODES",
     "COMMON_MODES",
     "LONGEST_PX2",
+    "OBLIQUE",
     "ModesFit",
     "blur_modes",
     "changed",
@@ -37,6 +38,8 @@ BLUR_MODES: Final = ("all around", "across more than along", "oblique", "middle 
 a quarter of a cycle per pixel."""
 ALL_AROUND: Final = 0
 """The mode that a softness of all objects has."""
+OBLIQUE: Final = 2
+"""The mode that changes nothing across and along."""
 COMMON_MODES: Final = 3
 """The blurs: what a sensor and all of its objects have in common is none of shape."""
 _MAX_STEPS: Final = 12

@@ -39,6 +39,8 @@ SCENE_CHECKS = (
 
 _DIRECTION_DEG = 15.0
 _SIGNIFICANT = 2.0
+_DISAGREE = 0.01
+"""Chance of blurs of parts that scatter by as much, below which they disagree."""
 _DECIMATED = 0.7
 """MTF at Nyquist of images that were decimated three times or more; hardly of sharpened ones."""
 _SEEN = 0.2
@@ -106,7 +108,7 @@ def check_scene(
         _parts_agree(fit.parts, limits),
         _diagonals(diagonal, other, limits),
         _axes_differ(across, along, fit.parts, limits),
-        _field_change(field, limits),
+        _field_change(field, fit.parts, limits),
         full_pixel(
             [curve(NYQUIST_CPP) for curve in (across, along)], limits, caution=_DECIMATED
         ),
@@ -214,7 +216,7 @@ def _axes_differ(across: Mtf, along: Mtf, parts: PartsFit | None, limits: Limits
     """How far the larger of the MTFs across and along surely exceeds the other, relative to it.
 
     At Nyquist, or where both tell more. Borders of one direction that are all soft alike pass for a
-    smear of the sensor; where parts of the scene were compared they would differ.
+    smear of the sensor. Where parts of the scene were compared and agree it is more likely one.
     """
     freq = SLICE_FREQ_CPP[SLICE_FREQ_CPP <= NYQUIST_CPP]
     mean = 0.5 * (across(freq).value + along(freq).value)
@@ -228,12 +230,18 @@ def _axes_differ(across: Mtf, along: Mtf, parts: PartsFit | None, limits: Limits
         found = f"{told}: more by at least {100 * excess:.0f} % (by {sigmas})"
     else:
         found = f"{told}: within {sigmas} they agree"
-    caution = None if parts is None else math.inf
+    if excess > 0 and _disagree(parts):
+        found += "; the parts of the scene disagree about the blur, as soft objects make them"
+    caution = None if parts is None or _disagree(parts) else math.inf
     return answer("axes_differ", min(excess, MAX_RATIO), found, limits, caution=caution)
 
 
-def _field_change(field: Field, limits: Limits) -> Check:
-    """How far the sharpness in the corners surely differs from its mean, relative to it."""
+def _field_change(field: Field, parts: PartsFit | None, limits: Limits) -> Check:
+    """How far the sharpness in the corners surely differs from its mean, relative to it.
+
+    Parts that disagree under a change that was found are not described by its smooth surface, as of
+    two detectors side by side: neither are the places, nor is the mean.
+    """
     if not field.is_fitted:
         found = "the edges are too few to ask whether sharpness changes over the field"
         return answer("field_change", 0.0, found, limits)
@@ -244,7 +252,16 @@ def _field_change(field: Field, limits: Limits) -> Check:
         f"% from its mean, surely (by {_SIGNIFICANT:.0f} standard deviations) by {100 * least:.0f} "
         "%"
     )
-    return answer("field_change", least, found, limits)
+    if least == 0.0 or not _disagree(parts):
+        return answer("field_change", least, found, limits)
+    found += "; the parts of the scene disagree about it, so it is no smooth one"
+    advice = "mean and places may err by more than their intervals; scan parts of it by themselves"
+    return answer("field_change", least, found, limits, caution=0.0, advice=advice)
+
+
+def _disagree(parts: PartsFit | None) -> bool:
+    """Whether the parts, where they were compared, disagree about the blur across and along."""
+    return parts is not None and parts.upright.p_value < _DISAGREE
 
 
 def _largest_change(field: Field) -> tuple[float, float]:

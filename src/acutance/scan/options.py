@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -82,8 +83,9 @@ class ScanOptions:
             )
         if self.max_length_px < 1.5 * self.min_length_px:
             raise OptionError(
-                f"max_length_px is {self.max_length_px:g} and min_length_px "
-                f"{self.min_length_px:g}: pieces have to be longer by half than the shortest edge"
+                f"min_length_px (--min-length) is {self.min_length_px:g}, and longer edges are cut "
+                f"into pieces of at most max_length_px, {self.max_length_px:g}: give at most "
+                f"{math.floor(self.max_length_px / 1.5)}, two thirds of it"
             )
 
     def to_dict(self) -> dict[str, Any]:

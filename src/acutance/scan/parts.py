@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
-from acutance.scan.blur_modes import ALL_AROUND, COMMON_MODES, edge_modes, fit_modes
+from acutance.scan.blur_modes import ALL_AROUND, COMMON_MODES, OBLIQUE, edge_modes, fit_modes
 from acutance.scan.edge_likelihoods import EdgeLikelihoods
 from acutance.targets.combine.curves import ChiSquare
 
@@ -38,6 +38,8 @@ class PartsFit(NamedTuple):
         Number of parts.
     chi_square : ChiSquare
         Of the blurs about their means.
+    upright : ChiSquare
+        The same of those alone that change the MTF across and along: oblique blur does not.
     errors_px2 : (3,) array
         Standard deviations that the whole scene has by them, of the blurs all around, across more
         than along and oblique, variances in px^2: 0 where the parts agree.
@@ -45,6 +47,7 @@ class PartsFit(NamedTuple):
 
     part_count: int
     chi_square: ChiSquare
+    upright: ChiSquare
     errors_px2: Floats
 
 
@@ -71,16 +74,20 @@ def compare_parts(
     parts = equal_parts(x, y)
     modes = edge_modes(edges.normal_deg, edges.freq_cpp)[:, :, :COMMON_MODES]
     each = [_scatter(edges, otf, share, modes[:, :, [one]], parts) for one in range(COMMON_MODES)]
-    found = [one for one in each if one is not None]
-    if not found:
+    if all(one is None for one in each):
         return None
     errors_px2 = np.zeros(COMMON_MODES)
     for mode, one in enumerate(each):
         if one is not None:
             errors_px2[mode] = one.scatter_px2 * (1.0 if mode == ALL_AROUND else one.averaged)
+    return PartsFit(len(parts), _chi_square(each), _chi_square(each[:OBLIQUE]), errors_px2)
+
+
+def _chi_square(each: Sequence[_Scatter | None]) -> ChiSquare:
+    """Of several blurs together, of those that are seen."""
+    found = [one for one in each if one is not None]
     freedom = sum(one.freedom for one in found)
-    chi_square = ChiSquare(sum(one.chi_square for one in found), freedom, 2 * freedom)
-    return PartsFit(len(parts), chi_square, errors_px2)
+    return ChiSquare(sum(one.chi_square for one in found), freedom, 2 * freedom)
 
 
 class _Scatter(NamedTuple):
