@@ -41,6 +41,8 @@ _DIRECTION_DEG = 15.0
 _SIGNIFICANT = 2.0
 _DISAGREE = 0.01
 """Chance of blurs of parts that scatter by as much, below which they disagree."""
+_WIDE_HALO_PX = 1.5
+"""Narrower halos come of mirrors that are not quite smooth, and of charge that diffuses."""
 _DECIMATED = 0.7
 """MTF at Nyquist of images that were decimated three times or more; hardly of sharpened ones."""
 _SEEN = 0.2
@@ -151,7 +153,11 @@ def _form_agrees(chi_square: ChiSquare, limits: Limits) -> Check:
 def _halo_share(sensor: CombinedOtf, limits: Limits) -> Check:
     """Which share of the light lies in a wide halo, the mean over all forms of the sensor."""
     numbers = [(one.weight, one.form.numbers(one.parameters)) for one in sensor.forms]
-    share = sum(weight * found.get("halo_share", 0.0) for weight, found in numbers)
+    share = sum(
+        weight * found["halo_share"]
+        for weight, found in numbers
+        if found.get("halo_sigma_px", 0.0) >= _WIDE_HALO_PX
+    )
     found = f"{100 * share:.0f} % of the light lies in a halo"
     return answer("halo_share", share, found, limits)
 
