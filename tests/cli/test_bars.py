@@ -34,7 +34,7 @@ def test_every_output(acutance, bars_image, shown, tmp_path, keeps_to_schema):
     assert [group["count"] for group in document["groups"]] == [5, 5, 5]
     assert [(name, found.kind) for name, found, _ in shown] == [("draw", "bars"), ("page", "bars")]
     rows = list(csv.DictReader(files[2].read_text().splitlines()))
-    assert {row["direction"] for row in rows} == {"across", "along", "normal"}
+    assert {row["direction"] for row in rows} == {"across", "normal"}
     assert float(rows[-1]["freq_cpm"]) == pytest.approx(2.0)
 
 
