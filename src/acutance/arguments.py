@@ -202,9 +202,7 @@ def require_paths(name: str, values: Any) -> tuple[str | os.PathLike[str], ...]:
     OptionError
         If it is a single one, or holds something else: names the argument.
     """
-    if isinstance(values, str | bytes | type | os.PathLike) or not isinstance(values, Iterable):
-        raise OptionError(f"{name} is {values!r:.80}: give a list of paths")
-    found = tuple(values)
+    found = _listed(name, values, "paths")
     for value in found:
         require_path(**{f"one of {name}": value})
     return found
@@ -218,13 +216,18 @@ def require_texts(name: str, values: Any) -> tuple[str, ...]:
     OptionError
         If it is a single one, or holds something else: names the argument.
     """
-    if isinstance(values, str | bytes | type) or not isinstance(values, Iterable):
-        raise OptionError(f"{name} is {values!r:.80}: give a list of texts")
-    found = tuple(values)
+    found = _listed(name, values, "texts")
     for value in found:
         if not isinstance(value, str):
             raise OptionError(f"one of {name} is {value!r:.80}: give a list of texts")
     return found
+
+
+def _listed(name: str, values: Any, words: str) -> tuple[Any, ...]:
+    """Several values of a caller, where a single one could be taken for a list of its parts."""
+    if isinstance(values, str | bytes | type | os.PathLike) or not isinstance(values, Iterable):
+        raise OptionError(f"{name} is {values!r:.80}: give a list of {words}")
+    return tuple(values)
 
 
 def require_floats(name: str, values: ArrayLike) -> NDArray[np.float64]:

@@ -156,7 +156,7 @@ random regions of benchmarks/fuzz.py those below had no 50 % point, or an MTF of
 MIN_PHASES: Final = 1.5
 """Sub-pixel phases below which nothing is measured: the profile has gaps of two thirds of a pixel,
 those of an edge at 45 degrees .71. Of 1100 edges and pulses with 1.5 to 2, behind sensors of all
-families, 93 to 97 % of the intervals hold, as of others; of edges along the grid 91 %."""
+families, 93 to 98 % of the intervals hold, as of others; of edges along the grid 91 %."""
 MIN_STRENGTH_SHARE: Final = 0.1
 MIN_CONTRAST_SHARE: Final = 0.8
 """Of all edges of a target: weakest segment that is tried, and lowest contrast that is kept,
