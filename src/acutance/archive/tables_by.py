@@ -23,6 +23,7 @@ from acutance.archive.trends.measured_series import random_and_systematic, targe
 from acutance.archive.trends.series import Series
 from acutance.arguments import require_texts
 from acutance.curves import METRICS, Estimate
+from acutance.curves.aligned_columns import align_columns
 from acutance.errors import NothingSelectedError, OptionError
 
 __all__ = ["GROUPS", "MeasurementTable", "TableRow", "table_by"]
@@ -133,14 +134,9 @@ class MeasurementTable:
 
     def __str__(self) -> str:
         """The table with its header and notes, as it is printed."""
-        columns = list(zip(self.header, *self.texts(), strict=True))
-        widths = [max(map(len, column)) for column in columns]
-        aligned = [
-            [f"{cell:{'<' if at < len(self.by) else '>'}{width}}" for cell in column]
-            for at, (column, width) in enumerate(zip(columns, widths, strict=True))
-        ]
-        lines = ["  ".join(line).rstrip() for line in zip(*aligned, strict=True)]
-        return "\n".join([*lines, "", *self.notes] if self.notes else lines)
+        sides = "l" * len(self.by) + "r" * (len(self.header) - len(self.by))
+        aligned = align_columns([self.header, *self.texts()], sides, indent="")
+        return "\n".join([aligned, "", *self.notes] if self.notes else [aligned])
 
     def texts(self) -> Iterator[tuple[str, ...]]:
         """The rows as text; where some cells are means, those of one measurement have a star."""

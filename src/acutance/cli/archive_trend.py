@@ -115,8 +115,8 @@ def _text(found: Trend) -> str:
         size_words,
         unsought_words,
     )
+    from acutance.curves.aligned_columns import align_columns
     from acutance.report.labels import MISSING
-    from acutance.report.text import align_columns
 
     rate, relative = found.rate_per_year, found.relative_rate_per_year
     in_percent = f"{percent(relative)}, " if found.has_scale else ""

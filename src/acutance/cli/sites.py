@@ -21,9 +21,9 @@ def sites(
     ] = False,
 ) -> None:
     """List the edge targets that --site knows."""
+    from acutance.curves.aligned_columns import align_columns
     from acutance.raster import sites as catalogue
     from acutance.report import json_text
-    from acutance.report.text import align_columns
 
     known = catalogue()
     if as_json:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from acutance.curves.aligned_columns import align_columns
 from acutance.report.check_words import (
     common_verdict,
     count_failed_checks,
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from acutance.scan.edge_table import EdgeTable
     from acutance.targets.measurement import Measurement
 
-__all__ = ["align_columns", "reasons_text", "table_text", "text"]
+__all__ = ["reasons_text", "table_text", "text"]
 
 MAX_ROWS = 40
 _REASONS = 6
@@ -163,26 +163,3 @@ def reasons_text(edges: EdgeTable) -> str:
     """Why edges of a scene are not used, the most frequent reasons first; empty if all are."""
     table = reasons_table(edges, _REASONS)
     return table_text(table) if table.rows else ""
-
-
-def align_columns(rows: Sequence[Sequence[str]], align: str, indent: str = "  ") -> str:
-    """Lay rows out in columns two spaces apart.
-
-    Parameters
-    ----------
-    rows : sequence of sequences of str
-        All of the same length.
-    align : str
-        One letter a column: ``"l"`` or ``"r"``.
-    indent : str, optional
-        What every line starts with.
-    """
-    widths = [max(len(row[i]) for row in rows) for i in range(len(align))]
-    lines = []
-    for row in rows:
-        cells = [
-            cell.ljust(width) if side == "l" else cell.rjust(width)
-            for cell, width, side in zip(row, widths, align, strict=True)
-        ]
-        lines.append((indent + "  ".join(cells)).rstrip())
-    return "\n".join(lines)

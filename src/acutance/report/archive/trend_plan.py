@@ -10,9 +10,9 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from acutance.archive.counted import counted
 from acutance.archive.trends.trend_plan import NOTICED
+from acutance.curves.aligned_columns import align_columns
 from acutance.report.labels import MISSING, format_number
 from acutance.report.paper import FAINT, INK, PALETTE, new_page, styled
-from acutance.report.text import align_columns
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

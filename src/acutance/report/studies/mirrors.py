@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 from acutance.archive.counted import counted
 from acutance.arguments import require_class
+from acutance.curves.aligned_columns import align_columns
 from acutance.report.labels import MISSING, format_number
 from acutance.report.paper import BLUE, FAINT, INK, new_page, styled
-from acutance.report.text import align_columns
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
