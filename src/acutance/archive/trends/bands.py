@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
-from scipy.special import ndtr
+from scipy.special import ndtr, ndtri
 
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 
 __all__ = ["TrendBands", "mixture_quantiles"]
 
-_HALVINGS: Final = 40
+_MOST_STEPS: Final = 60
+_CLOSE: Final = 1e-10
 _REACH: Final = 12.0
+_FAR: Final = 38.0
+"""Standard deviations beyond which a normal density is zero."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,8 +63,21 @@ def mixture_quantiles(share: Floats, mean: Floats, std: Floats, level: float) ->
     level : float
     """
     low, high = (mean - _REACH * std).min(axis=0), (mean + _REACH * std).max(axis=0)
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        is_low = share @ ndtr((middle - mean) / np.maximum(std, 1e-300)) < level
-        low, high = np.where(is_low, middle, low), np.where(is_low, high, middle)
-    return np.asarray(0.5 * (low + high))
+    std = np.maximum(std, 1e-300)
+    close = _CLOSE * (high - low)
+    centre = share @ mean
+    spread = np.sqrt(share @ ((mean - centre) ** 2 + std**2))
+    place = np.clip(centre + ndtri(level) * spread, low, high)
+    # Newton's steps, and a halving where one would leave what is known to hold the quantile.
+    for _ in range(_MOST_STEPS):
+        off = np.clip((place - mean) / std, -_FAR, _FAR)
+        excess = share @ ndtr(off) - level
+        low, high = np.where(excess < 0, place, low), np.where(excess < 0, high, place)
+        density = share @ (np.exp(-0.5 * off**2) / std) / math.sqrt(2 * math.pi)
+        step = place - excess / np.maximum(density, 1e-300)
+        new = np.where((low <= step) & (step <= high), step, 0.5 * (low + high))
+        is_close = np.abs(new - place) <= close
+        place = new
+        if is_close.all():
+            break
+    return np.asarray(place)
