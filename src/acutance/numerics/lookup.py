@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
+from acutance.numerics.compiled import compiled
 
 __all__ = ["CubicLookup"]
 
@@ -42,7 +43,21 @@ class CubicLookup:
 
     def __call__(self, table: NDArray[_Number]) -> NDArray[_Number]:
         """A table (rows, k) at the places, (n, k)."""
-        total: NDArray[_Number] = self.weights[0][:, None] * table[self.first]
-        for k in range(1, 4):
-            total += self.weights[k][:, None] * table[self.first + k]
-        return total
+        found = np.empty((self.first.size, table.shape[1]), table.dtype)
+        _interpolate(found, np.ascontiguousarray(table), self.first, self.weights)
+        return found
+
+
+@compiled
+def _interpolate(
+    found: NDArray[_Number], table: NDArray[_Number], first: NDArray[np.intp], weights: Floats
+) -> None:
+    """Fill `found` with weighted sums of four rows of a table."""
+    for i in range(first.size):
+        row = first[i]
+        a, b, c, d = weights[0, i], weights[1, i], weights[2, i], weights[3, i]
+        for k in range(table.shape[1]):
+            found[i, k] = (
+                a * table[row, k] + b * table[row + 1, k]
+                + c * table[row + 2, k] + d * table[row + 3, k]
+            )  # fmt: skip
