@@ -142,6 +142,28 @@ def acutance() -> Iterator[Callable[..., Any]]:
 
 
 @pytest.fixture(scope="session")
+def schema_validator() -> Any:
+    """Validates documents of measurements.
+
+    A covariance has a million numbers, for each of which a validator is made: where every item
+    is a plain number, which is all that its schema asks, none need be.
+    """
+    from jsonschema import Draft202012Validator
+    from jsonschema.validators import extend
+
+    from acutance.report import measurement_schema
+
+    thorough = Draft202012Validator.VALIDATORS["items"]
+
+    def items(validator: Any, wanted: Any, found: Any, schema: Any) -> Iterator[Any]:
+        is_plain = isinstance(found, list) and {type(one) for one in found} <= {int, float}
+        if not (is_plain and wanted == {"type": "number"}):
+            yield from thorough(validator, wanted, found, schema)
+
+    return extend(Draft202012Validator, {"items": items})(measurement_schema())
+
+
+@pytest.fixture(scope="session")
 def few_forms() -> Callable[[], AbstractContextManager[None]]:
     """``with few_forms():`` the sensor of a scene is one of two plain forms.
 

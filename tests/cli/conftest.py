@@ -2,13 +2,11 @@
 
 import numpy as np
 import pytest
-from jsonschema import Draft202012Validator
 
 from acutance import optics, simulate
 from acutance.archive import Archive
 from acutance.archive.published import published_entries
 from acutance.raster import write_geotiff
-from acutance.report import measurement_schema
 
 SENSOR = optics.Sensor([optics.Gaussian(0.4), optics.Detector()], gsd_m=0.7)
 
@@ -79,11 +77,12 @@ def refused(acutance):
 
 
 @pytest.fixture(scope="session")
-def keeps_to_schema():
+def keeps_to_schema(schema_validator):
     """A measurement's document keeps to the schema; what does not is named in a line each."""
-    validator = Draft202012Validator(measurement_schema())
 
     def check(document):
-        assert not [f"{e.json_path}: {e.message:.200}" for e in validator.iter_errors(document)]
+        assert not [
+            f"{e.json_path}: {e.message:.200}" for e in schema_validator.iter_errors(document)
+        ]
 
     return check

@@ -8,7 +8,6 @@ from functools import cache
 
 import numpy as np
 import pytest
-from jsonschema import Draft202012Validator
 from test_figures import outside, overlaps, texts
 
 import acutance as ac
@@ -18,7 +17,6 @@ from acutance.report import (
     draw,
     figure_bytes,
     json_text,
-    measurement_schema,
     notebook_html,
     page,
     panels,
@@ -117,9 +115,9 @@ def test_text_and_page_show_the_tables_of_the_kind(result):
     assert " less " not in re.sub(r"data:image[^\"]*", "", whole)
 
 
-def test_the_document_keeps_to_the_schema(result):
+def test_the_document_keeps_to_the_schema(result, schema_validator):
     content = json.loads(json_text(document(result, covariance=True)))
-    Draft202012Validator(measurement_schema()).validate(content)
+    schema_validator.validate(content)
 
 
 def test_all_outputs_are_made_without_details(result):
