@@ -33,22 +33,26 @@ from acutance.targets.combine.sensor_terms import TERMS
 SENSOR = ac.Sensor([ac.optics.Gaussian(0.39), ac.optics.Detector()], gsd_m=0.7)
 
 
+@cache
 def points():
     image, truth = ac.simulate.points(SENSOR, snr=80.0, rng=np.random.default_rng(1))
     return ac.measure_points(image, gsd_m=0.7, surveyed=truth.positions)
 
 
+@cache
 def mirrors():
     image, truth = ac.simulate.points(SENSOR, snr=80.0, rng=np.random.default_rng(2))
     return ac.measure_points(image, positions=truth.positions, method="gaussian-2003")
 
 
+@cache
 def bars():
     periods = (8.0, 4.0, 2.5)
     image, _ = ac.simulate.bars(SENSOR, periods_px=periods, snr=80.0, rng=np.random.default_rng(3))
     return ac.measure_bars(image, gsd_m=0.7)
 
 
+@cache
 def star():
     image, _ = ac.simulate.star(
         SENSOR, snr=80.0, shape=(96, 96), radius_px=40.0, rng=np.random.default_rng(4)
@@ -56,12 +60,14 @@ def star():
     return ac.measure_star(image, gsd_m=0.7)
 
 
+@cache
 def pair():
     rng = np.random.default_rng(5)
     low, high, *_ = ac.simulate.pair(SENSOR, SENSOR, ratio=4, snr=80.0, rng=rng)
     return ac.measure_biresolution(low, high, ratio=4)
 
 
+@cache
 def combined():
     both = []
     for seed, orientation in enumerate(("across", "along")):

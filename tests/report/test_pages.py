@@ -32,8 +32,14 @@ def titles(html):
     return [heading.text for heading in parsed(html).iter("h2")]
 
 
-def test_a_page_begins_with_the_verdict_and_the_main_numbers(measurement):
-    html = page(measurement)
+@pytest.fixture(scope="module")
+def edge_page(measurement):
+    """The page of an edge, once: drawing takes longer than all questions about it."""
+    return page(measurement)
+
+
+def test_a_page_begins_with_the_verdict_and_the_main_numbers(measurement, edge_page):
+    html = edge_page
     text = words(html)
     assert titles(html)[:2] == ["Result", "Curves and pixels"]
     verdict, numbers = (
@@ -46,8 +52,8 @@ def test_a_page_begins_with_the_verdict_and_the_main_numbers(measurement):
     assert len(first.findall(".//img")) == 2
 
 
-def test_a_page_says_where_the_pixels_come_from_and_when_they_were_measured(measurement):
-    text = words(page(measurement))
+def test_a_page_says_where_the_pixels_come_from_and_when_they_were_measured(measurement, edge_page):
+    text = words(edge_page)
     facts = text[: text.index("Result")]
     for fact in ("image scene.tif", "band 1", "rows 100–139, columns 260–295", "GSD 0.7 m"):
         assert fact in facts
@@ -58,8 +64,8 @@ def test_a_page_says_where_the_pixels_come_from_and_when_they_were_measured(meas
     assert "from 203 to 1208 DN" in facts
 
 
-def test_the_page_of_an_edge_holds_numbers_checks_and_how_to_repeat_it(measurement):
-    html = page(measurement)
+def test_the_page_of_an_edge_holds_numbers_checks_and_how_to_repeat_it(measurement, edge_page):
+    html = edge_page
     text = words(html)
     for number in measurement.metrics().values():
         assert str(number).split(" ± ")[0] in text
@@ -88,13 +94,14 @@ def test_the_page_of_a_pulse_speaks_of_a_pulse(pulse, make_pulse):
 
 def test_the_command_says_which_axis_is_along_track(measurement):
     turned = replace(measurement, image=replace(measurement.image, along_track="x"))
-    assert "along track, 6.02" in words(page(turned))
-    assert "--along-track x --method" in words(page(turned))
+    text = words(page(turned))
+    assert "along track, 6.02" in text
+    assert "--along-track x --method" in text
 
 
-def test_nothing_is_loaded_from_elsewhere(measurement, compared, truth, target, both):
-    for result in (measurement, compare(compared, truth=truth), target, both):
-        html = page(result)
+def test_nothing_is_loaded_from_elsewhere(edge_page, compared, truth, target, both):
+    others = (compare(compared, truth=truth), target, both)
+    for html in (edge_page, *map(page, others)):
         addresses = re.findall(r"(?:src|href)=\"([^\"]{1,40})", html)
         assert addresses
         assert all(address.startswith("data:image/svg+xml;base64,") for address in addresses)
@@ -102,8 +109,8 @@ def test_nothing_is_loaded_from_elsewhere(measurement, compared, truth, target, 
         assert "@import" not in html
 
 
-def test_every_image_has_words_for_those_who_cannot_see_it(measurement):
-    assert all(image.get("alt") for image in parsed(page(measurement)).findall(".//img"))
+def test_every_image_has_words_for_those_who_cannot_see_it(edge_page):
+    assert all(image.get("alt") for image in parsed(edge_page).findall(".//img"))
 
 
 def test_text_from_outside_is_escaped(measurement):
@@ -200,20 +207,21 @@ def test_a_section_holds_whatever_it_is_given():
 def test_a_notebook_shows_numbers_checks_and_a_figure(measurement, both, details):
     for result in (measurement, both):
         shown = result if details else result.without_details()
-        text = words(notebook_html(shown))
+        html = notebook_html(shown)
+        text = words(html)
         assert "Doubtful: " in text
         for number in shown.directions[shown.measured_directions[0]].metrics().values():
             if number.std > 0:
                 assert f"± {str(number).split(' ± ')[1]}" in text
                 break
-        assert len(parsed(notebook_html(shown)).findall(".//img")) == 1
+        assert len(parsed(html).findall(".//img")) == 1
 
 
 def test_a_record_shows_the_numbers_of_its_measurement(measurement, pulse, both):
     for result in (measurement, pulse, both):
-        full, light = words(notebook_html(result)), words(notebook_html(result.record))
-        assert full == light
-        assert len(parsed(notebook_html(result.record)).findall(".//img")) == 1
+        full, light = notebook_html(result), notebook_html(result.record)
+        assert words(full) == words(light)
+        assert len(parsed(light).findall(".//img")) == 1
 
 
 def test_measurements_and_records_show_themselves_in_notebooks(measurement):
@@ -237,9 +245,9 @@ def test_several_measurements_show_their_tables_in_notebooks(few_forms):
     assert all(f"{scene.along.rer}" in shown for scene in bands.measurements)
 
 
-def test_on_paper_the_result_begins_on_the_first_sheet(measurement):
+def test_on_paper_the_result_begins_on_the_first_sheet(edge_page):
     """As one block that keeps together, numbers and drawings left the first sheet empty."""
-    (printed,) = re.findall(r"@media print \{(.+?)\n\}", page(measurement), re.DOTALL)
+    (printed,) = re.findall(r"@media print \{(.+?)\n\}", edge_page, re.DOTALL)
     (kept,) = re.findall(r"([^{}\n]+) \{ break-inside: avoid; \}", printed)
     assert ".side" not in kept
     assert "figure" in kept
