@@ -76,10 +76,11 @@ def test_a_softness_of_all_objects_is_stated(acutance, scene, keeps_to_schema, f
 
 
 def test_several_bands_are_one_run(acutance, colours, tmp_path, shown, keeps_to_schema, few_forms):
-    done = acutance(
-        "scan", colours, "--band", "all", "--workers", 1, "--keep", tmp_path / "scan.parts",
-        "--edges", tmp_path / "edges.csv", "--figure", tmp_path / "scan.png", "--json",
-    )  # fmt: skip
+    with few_forms():
+        done = acutance(
+            "scan", colours, "--band", "all", "--workers", 1, "--keep", tmp_path / "scan.parts",
+            "--edges", tmp_path / "edges.csv", "--figure", tmp_path / "scan.png", "--json",
+        )  # fmt: skip
     assert done.exit_code == 0, done.stderr
     document = json.loads(done.stdout)
     assert document["schema"] == "acutance/bands/1"
