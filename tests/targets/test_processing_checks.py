@@ -1,5 +1,7 @@
 """What processing left in the pixels is named, whatever the target: a scene, a pair, a region."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from rasterio.io import MemoryFile
@@ -38,6 +40,7 @@ def failed(found):
     return {check.name for check in found.failed_checks} & set(PROCESSING_CHECKS)
 
 
+@cache
 def scenes():
     rng = np.random.default_rng(1)
     return {
@@ -96,23 +99,26 @@ def test_either_image_of_a_pair_counts():
     assert failed(ac.measure_biresolution(low, high, ratio=3)) == {"repeated_pixels"}
 
 
-def test_scenes_are_asked_once_and_not_by_their_edges():
+def test_scenes_are_asked_once_and_not_by_their_edges(few_forms):
     image, _ = simulate.landscape(SENSOR, shape=(400, 400), snr=60, rng=np.random.default_rng(3))
-    plain = ac.scan_scene(np.rint(image))
-    assert not failed(plain)
     written = ac.Image.from_array(as_jpeg(image, 85), gsd_m=0.5)
-    compressed = ac.scan_scene(written, gsd_m=30.0)
+    with few_forms():
+        plain = ac.scan_scene(np.rint(image), workers=1)
+        compressed = ac.scan_scene(written, gsd_m=30.0, workers=1)
+    assert not failed(plain)
     assert failed(compressed) == {"jpeg_blocks"}
     assert "stated_gsd" in {check.name for check in compressed.failed_checks}
     assert compressed.verdict.word == "doubtful"
     assert not any("JPEG" in reason for reason in compressed.edges.reason)
 
 
-def test_an_interpolated_scene_says_by_how_much():
+def test_an_interpolated_scene_says_by_how_much(few_forms):
     image, _ = simulate.landscape(SENSOR, shape=(470, 470), snr=60, rng=np.random.default_rng(5))
     at = np.arange(400) / 1.1 + 50.0
-    plain = ac.scan_scene(image[:400, :400])
-    found = ac.scan_scene(simulate.resample(image, at[:, None], at, kernel="cubic"))
+    enlarged_image = simulate.resample(image, at[:, None], at, kernel="cubic")
+    with few_forms():
+        plain = ac.scan_scene(image[:400, :400], workers=1)
+        found = ac.scan_scene(enlarged_image, workers=1)
     (check,) = (one for one in found.checks if one.name == "periodic_noise")
     assert not check.passed
     assert check.severity == "note"
