@@ -28,6 +28,7 @@ def main() -> None:
     points, truth = simulate.points(sensor, snr=100, rng=rng)
     ac.measure_points(points, positions=truth.positions)
     ac.measure_points(points)
+    ac.measure_bars(simulate.bars(sensor, snr=100, rng=rng)[0])
 
 
 if __name__ == "__main__":
