@@ -135,6 +135,7 @@ def regress(
     variance: float,
     inflation: float = 1.0,
     earlier: Posterior | None = None,
+    pixels: Normal | None = None,
 ) -> Posterior:
     """Fit coefficients, prior amplitudes and noise variance together.
 
@@ -149,7 +150,11 @@ def regress(
         Factor on the noise variance for correlated noise (>= 1 for low-pass noise).
     earlier : Posterior, optional
         Solution of nearly the same problem: its amplitudes are the first guess.
+    pixels : Normal, optional
+        Equations whose misfit tells the noise variance, where a random process was integrated out
+        of `normal`.
     """
+    pixels = normal if pixels is None else pixels
     floor = prior.noise_floor**2
     variance = max(variance, floor)
     log_amplitude = prior.log_amplitude if earlier is None else earlier.log_amplitude
@@ -159,7 +164,7 @@ def regress(
         step = slopes.step()
         beta = white.sigma * white.mean
         freedom = beta.size - white.undetermined
-        updated = max(normal.misfit(beta) / max(normal.count - freedom, 1.0), floor)
+        updated = max(pixels.misfit(beta) / max(pixels.count - freedom, 1.0), floor)
         settled = abs(updated / variance - 1) < _SETTLED_NOISE
         variance, log_amplitude = updated, log_amplitude + step
         if settled and float(np.abs(step).max()) < _SETTLED_AMPLITUDE:

@@ -97,17 +97,20 @@ def render_parcels(
     require_whole(1, subpixels=subpixels)
     size = (shape[0] * subpixels, shape[1] * subpixels)
     blur_px = _BLUR_SAMPLES / subpixels
-    ground, covers = np.zeros(size), np.zeros((2, *shape))
+    ground, covers = np.zeros(size), np.zeros((2, *size))
     for parcel in parcels:
         rows, cols = _window(parcel, shape, blur_px)
         level, cover = parcel.drawn(
             _places(rows, subpixels)[:, None], _places(cols, subpixels)[None, :], blur_px
         )
         ground[_fine(rows, subpixels), _fine(cols, subpixels)] += level
-        share = cover[::subpixels, ::subpixels]
-        covers[:, rows, cols] += np.array([1.0, parcel.texture_std])[:, None, None] * share
-    spectrum = fft.rfft2(ground) * _transfer(sensor, shape, subpixels, blur_px)
-    return _every_pixel(spectrum, shape, subpixels), covers
+        fine = _fine(rows, subpixels), _fine(cols, subpixels)
+        covers[:, *fine] += np.array([1.0, parcel.texture_std])[:, None, None] * cover
+    transfer = _transfer(sensor, shape, subpixels, blur_px)
+    image, *seen = (
+        _every_pixel(fft.rfft2(one) * transfer, shape, subpixels) for one in (ground, *covers)
+    )
+    return image, np.array(seen)
 
 
 def window_of_light(parcels: Sequence[Parcel], reach_px: int) -> Box:

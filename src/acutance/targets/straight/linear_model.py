@@ -186,11 +186,16 @@ class Linear:
         sides = np.maximum(sides, self.rounding.floor**2)
         floor = (NOISE_FLOOR * self.first_fit.height) ** 2
         scale = float(0.5 * (sides[0] + sides[1])) + floor
-        dark, bright = ((sides + floor) / scale).tolist()
-        relative = _between_levels(self.mean, dark, bright)
+        both = (sides + floor) / scale
+        relative = self.over_pixels(both, roughness)
+        return NoiseModel(sides / scale, scale, relative, math.log(both[1] / both[0]))
+
+    def over_pixels(self, sides: Floats, roughness: float) -> Floats:
+        """Variance of the noise of every pixel, (n,), from that on the two plateaus, (2,)."""
+        variance = _between_levels(self.mean, float(sides[0]), float(sides[1]))
         if roughness > 0:
-            relative *= 1 + roughness * self.steepness
-        return NoiseModel(sides / scale, scale, relative, math.log(bright / dark))
+            variance *= 1 + roughness * self.steepness
+        return variance
 
     def columns(self, model: LsfModel | None) -> list[Floats]:
         """All regressors other than the spline, those that depend on the LSF in the last array.
@@ -214,11 +219,14 @@ class Linear:
             by_parameter += [-profile.shares[1] * lsf, -esf][-(self.derivatives - 2) :]
         return [*self.fixed, np.stack(by_parameter)]
 
-    def image(self, columns: Sequence[Floats], beta: Floats) -> Floats:
-        """The image of the unknowns, to be added to the first fit, (n,)."""
+    def coefficients(self, beta: Floats) -> Floats:
+        """Coefficients of spline and regressors of the unknowns."""
         r = self.design.shape[1]
-        coefficients = self.design @ beta[:r]
-        further = np.concatenate([coefficients[CELLS + 3 :], beta[r:]])
+        return np.concatenate([self.design @ beta[:r], beta[r:]])
+
+    def image(self, columns: Sequence[Floats], coefficients: Floats) -> Floats:
+        """The image of coefficients, to be added to the first fit, (n,)."""
+        further = coefficients[CELLS + 3 :]
         image, *others = (combine(*own, coefficients[: CELLS + 3]) for own in self.stencils)
         for other in others:
             image += other

@@ -12,18 +12,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Final
 
 import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.errors import NoEdgeError
-from acutance.numerics.compiled import compiled
-from acutance.numerics.marginal_likelihood import Posterior, regress
 from acutance.numerics.noise import Correlation, correlation, outlier_weights, robust_scale
-from acutance.numerics.normal_equations import Normal
 from acutance.targets.steps import Steps
 from acutance.targets.straight.among_sensors import AmongSensors, among_sensors
+from acutance.targets.straight.coloured_noise import ColouredNoise
 from acutance.targets.straight.error_causes import FitCauses
 from acutance.targets.straight.first_fit import FirstFit
 from acutance.targets.straight.ground_steps import GroundSide
@@ -31,10 +28,11 @@ from acutance.targets.straight.linear_model import Linear
 from acutance.targets.straight.lsf import LsfModel
 from acutance.targets.straight.pixels import Pixels
 from acutance.targets.straight.pixels_alone import PixelsAlone
-from acutance.targets.straight.spline_equations import accumulate, renewed
+from acutance.targets.straight.solution import OUTLYING, Solution, solved_pass
+from acutance.targets.straight.spline import CELLS
 from acutance.targets.straight.step_profile import Profile
 
-__all__ = ["Solution", "Solved", "solve"]
+__all__ = ["Solved", "solve"]
 
 _SETTLED_PX = 0.01
 _SETTLED_BEND_PX = 0.03
@@ -45,10 +43,6 @@ _SETTLED_NOISE = 0.2
 """Of the logarithm of the ratio of the sides' variances."""
 _NEGLIGIBLE_SIGMAS = 3.0
 _MAX_PASSES = 10
-_STEEP: Final = 0.25
-_MIN_STEEP: Final = 20
-_SIGNIFICANT: Final = 4.0
-_OUTLYING: Final = 4.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,93 +102,6 @@ class Solved:
         return self.first_fit.dark + float(self.solution.posterior.beta[0])
 
 
-@dataclass(frozen=True, eq=False)
-class Solution:
-    """One pass: the linear model solved at given weights.
-
-    Attributes
-    ----------
-    linear : Linear
-    weight : (n,) array
-        Weights of the pixels.
-    columns : list of (q, n) arrays
-        Regressors other than the spline.
-    normal : Normal
-        The equations of the pixels, of spline and regressors.
-    equations : Normal
-        The same in the unknowns.
-    posterior : Posterior
-        Of the unknowns.
-    residual : (n,) array
-        Of every pixel, in image units.
-    standard : (n,) array
-        The same in standard deviations of the pixel's noise.
-    side_noise : (float, float)
-        Standard deviation of the noise on the dark and on the bright plateau.
-    noise_log_ratio : float
-        Logarithm of the ratio of their variances that the weights assume.
-    roughness : float
-        Noise variance that the edge roughness adds where the image is steepest, relative to the
-        rest.
-    """
-
-    linear: Linear
-    weight: Floats
-    columns: list[Floats]
-    normal: Normal
-    equations: Normal
-    posterior: Posterior
-    residual: Floats
-    standard: Floats
-    side_noise: tuple[float, float]
-    noise_log_ratio: float
-    roughness: float
-
-    @property
-    def model(self) -> LsfModel:
-        """The LSF of this pass."""
-        return self.linear.model(self.posterior)
-
-    @property
-    def mean_model(self) -> LsfModel:
-        """The same without its covariance: the next pass takes no more of it."""
-        return self.linear.mean_model(self.posterior)
-
-    @property
-    def rotation_rad(self) -> float:
-        """Rotation of the line in this pass."""
-        return float(self.posterior.beta[-self.linear.derivatives])
-
-    @property
-    def rotation_std_rad(self) -> float:
-        """Standard deviation of the rotation."""
-        return _norm(self.posterior.factor[-self.linear.derivatives])
-
-    @property
-    def curvature_per_px(self) -> float:
-        """What the line bends in this pass."""
-        return float(self.posterior.beta[1 - self.linear.derivatives])
-
-    @property
-    def curvature_std_per_px(self) -> float:
-        """Standard deviation of the curvature."""
-        return _norm(self.posterior.factor[1 - self.linear.derivatives])
-
-    @property
-    def updates(self) -> Floats:
-        """Changes of a pulse's width (if free) and of its height ratio in this pass, (k,)."""
-        return self.posterior.beta[self._first_update :]
-
-    @property
-    def updates_std(self) -> Floats:
-        """Standard deviations of the updates, (k,)."""
-        return np.array([_norm(row) for row in self.posterior.factor[self._first_update :]])
-
-    @property
-    def _first_update(self) -> int:
-        return self.posterior.beta.size - self.linear.derivatives + 2
-
-
 def solve(
     pixels: Pixels, first_fit: FirstFit, *, robust: bool = True, fit_width: bool = False
 ) -> Steps[Solved]:
@@ -213,13 +120,14 @@ def solve(
     linear = Linear.about(first_fit, pixels, fit_width=fit_width)
     outlier = np.ones(pixels.value.size)
     whiteness = Correlation(1.0, 0.0, 0.0)
+    coloured: ColouredNoise | None = None
     earlier: Solution | None = None
     roughness = 0.0
     for _ in range(_MAX_PASSES):
-        solved = _pass(linear, outlier, whiteness.inflation, roughness, earlier)
+        solved = solved_pass(linear, outlier, whiteness.inflation, coloured, roughness, earlier)
         standard = solved.standard
         has_noise = first_fit.profile.is_edge or _has_settled_noise(solved, outlier)
-        heavy = robust and has_noise and float(np.abs(standard).max()) > _OUTLYING
+        heavy = robust and has_noise and float(np.abs(standard).max()) > OUTLYING
         again = _reweighted(standard, linear) if heavy else outlier
         found = correlation(_bounded(standard), *pixels.at, [linear.first_fit.line.normal])
         short = _are_short(solved, fit_width)
@@ -238,6 +146,7 @@ def solve(
         if settled:
             break
         outlier, whiteness, earlier = again, found, solved
+        coloured = _coloured(solved, found, pixels)
         roughness = solved.roughness
         has_moved = not (short and _is_at_rest(solved))
         if has_moved or is_unphased:
@@ -246,7 +155,7 @@ def solve(
             linear = Linear.about(about, pixels, fit_width=fit_width, fitted=fitted)
     yield
     seen = among_sensors(
-        solved.linear, solved.normal, solved.equations, solved.posterior, whiteness.inflation
+        solved.linear, solved.left, solved.equations, solved.posterior, solved.inflation
     )
     return Solved(_seen_again(solved, seen), seen, outlier, whiteness)
 
@@ -254,8 +163,20 @@ def solve(
 def _seen_again(solved: Solution, seen: AmongSensors) -> Solution:
     """The last pass, with its own unknowns."""
     linear, posterior = seen.linear, seen.posterior
-    residual = linear.first_residual - linear.image(solved.columns, posterior.beta)
+    coefficients = linear.coefficients(posterior.beta)
+    if solved.random_profile is not None:
+        coefficients[: CELLS + 3] += solved.random_profile.likeliest(solved.normal, coefficients)
+    residual = linear.first_residual - linear.image(solved.columns, coefficients)
     return replace(solved, linear=linear, posterior=posterior, residual=residual)
+
+
+def _coloured(solved: Solution, found: Correlation, pixels: Pixels) -> ColouredNoise | None:
+    """Spectra of the noise beside an edge, where it is known to correlate."""
+    first_fit = solved.linear.first_fit
+    if not (first_fit.profile.is_edge and found.by_lag):
+        return None
+    standard = _bounded(solved.standard)
+    return ColouredNoise.of(standard, pixels.at, solved.linear.mean, first_fit.line.normal)
 
 
 def _has_settled_noise(solved: Solution, outlier: Floats) -> bool:
@@ -316,75 +237,9 @@ def _updated(solved: Solution, fit_width: bool) -> FirstFit:
     return replace(first_fit, line=line, profile=profile)
 
 
-def _pass(
-    linear: Linear, outlier: Floats, inflation: float, roughness: float, earlier: Solution | None
-) -> Solution:
-    """Solve for the correction of the LSF, the levels, the line and the profile."""
-    # What the first fit leaves beside an edge is structure of the ground: weights have to know it.
-    left = linear.first_residual
-    if earlier is not None and not linear.first_fit.profile.is_edge:
-        left = earlier.residual
-    noise = linear.noise(left, outlier, roughness)
-    weight = outlier / noise.relative
-    columns = linear.columns(None if earlier is None else earlier.mean_model)
-    normal = _equations(linear, weight, columns, float(np.add.reduce(outlier)), earlier)
-    equations = normal.combined(linear.design)
-    posterior = regress(
-        equations, linear.prior, noise.scale, inflation,
-        None if earlier is None else earlier.posterior,
-    )  # fmt: skip
-    residual = linear.first_residual - linear.image(columns, posterior.beta)
-    standard = residual / np.sqrt(posterior.variance * noise.relative)
-    dark, bright = np.sqrt(posterior.variance * noise.sides).tolist()
-    return Solution(
-        linear, weight, columns, normal, equations, posterior, residual, standard, (dark, bright),
-        noise.log_ratio, _edge_roughness(standard, linear.steepness, roughness),
-    )  # fmt: skip
-
-
-def _equations(
-    linear: Linear, weight: Floats, columns: list[Floats], count: float, earlier: Solution | None
-) -> Normal:
-    """The pixels' equations; those that do not depend on the LSF are kept from an earlier pass."""
-    stencils, residual = linear.stencils, linear.first_residual
-    if (
-        earlier is None
-        or earlier.linear is not linear
-        or not np.array_equal(earlier.weight, weight)
-    ):
-        return accumulate(stencils, residual, weight, columns, count)
-    return renewed(earlier.normal, stencils, residual, weight, columns)
-
-
-@compiled
-def _edge_roughness(standard: Floats, steep: Floats, assumed: float) -> float:
-    """Excess noise variance of the steep pixels, beyond chance, relative to the rest.
-
-    Of those that are no outliers.
-    """
-    count, square, steepness = 0, 0.0, 0.0
-    for k in range(standard.size):
-        if steep[k] > _STEEP and abs(standard[k]) < _OUTLYING:
-            count += 1
-            # In units of the noise without edge roughness.
-            square += standard[k] ** 2 * (1 + assumed * steep[k])
-            steepness += steep[k]
-    if count < _MIN_STEEP:
-        return assumed
-    power = square / count
-    if assumed == 0 and power < 1 + _SIGNIFICANT * math.sqrt(2 / count):
-        return 0.0
-    return max((power - 1) * count / steepness, 0.0)
-
-
-def _norm(row: Floats) -> float:
-    """Standard deviation that a row of a factor stands for."""
-    return math.sqrt(float(row @ row))
-
-
 def _bounded(standard: Floats) -> Floats:
     """Residuals in standard deviations, outliers bounded."""
-    return np.minimum(np.maximum(standard, -_OUTLYING), _OUTLYING)
+    return np.minimum(np.maximum(standard, -OUTLYING), OUTLYING)
 
 
 def _reweighted(standard: Floats, linear: Linear) -> Floats:

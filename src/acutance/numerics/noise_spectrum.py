@@ -1,0 +1,90 @@
+"""Power spectra of noise that correlates, from residuals at any pixels of an image.
+
+The covariances of pixels some lags apart are tapered by Parzen's window, and transformed (R. B.
+Blackman and J. W. Tukey, The Measurement of Power Spectra, 1959; E. Parzen, Technometrics 3, 1961,
+167). Pixels may be missing: of every lag the pairs that there are count.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import fft
+
+from acutance.curves.grid import Floats
+
+__all__ = ["NoiseSpectrum"]
+
+_REACH: Final = 6
+"""Pixels this far apart are taken to be independent: grains of 1.5 px, and kernels of resampling,
+are within it."""
+_LAG: Final = np.arange(-_REACH, _REACH + 1)
+_MIN_PAIRS: Final = 20
+_LEAST: Final = 0.01
+"""Of white noise: less is beyond what a few thousand pixels tell of a power."""
+
+
+def _parzen(distance: Floats) -> Floats:
+    """Parzen's window of distances relative to its reach."""
+    near = 1 - 6 * distance**2 + 6 * distance**3
+    return np.where(distance < 0.5, near, 2 * np.maximum(1 - distance, 0.0) ** 3)
+
+
+_DOWN, _RIGHT = (lag.ravel() for lag in np.meshgrid(_LAG, _LAG, indexing="ij"))
+_TAPER: Final[Floats] = _parzen(np.hypot(_DOWN, _RIGHT) / _REACH)
+
+
+@dataclass(frozen=True, eq=False)
+class NoiseSpectrum:
+    """Power spectrum of noise, over that of white noise of the same variance.
+
+    Attributes
+    ----------
+    covariance : (169,) array
+        Tapered covariance of pixels -6 to 6 rows and columns apart, over the variance.
+    """
+
+    covariance: Floats
+
+    @classmethod
+    def of(cls, residual: Floats, rows: NDArray[np.intp], cols: NDArray[np.intp]) -> NoiseSpectrum:
+        """From residuals of some pixels.
+
+        Parameters
+        ----------
+        residual : (n,) array
+            Outliers bounded.
+        rows, cols : (n,) int arrays
+            Their pixels, from 0.
+        """
+        shape = padded_shape(rows, cols)
+        planes = np.zeros((2, *shape))
+        planes[0, rows, cols], planes[1, rows, cols] = residual, 1.0
+        sums, pairs = fft.irfft2(np.abs(fft.rfft2(planes)) ** 2, shape)[:, _DOWN, _RIGHT]
+        known = pairs > _MIN_PAIRS
+        covariance = np.where(known, sums / np.maximum(pairs, 1.0), 0.0) * _TAPER
+        return cls(covariance / covariance[covariance.size // 2])
+
+    def along(self, normal: tuple[float, float], freq_cpp: Floats) -> Floats:
+        """Power at frequencies (k,) along a direction (x, y), (k,).
+
+        Pixels are a lattice: beyond their Nyquist frequency the power comes again.
+        """
+        along_px = normal[0] * _RIGHT + normal[1] * _DOWN
+        power = np.cos(2 * np.pi * freq_cpp[:, None] * along_px) @ self.covariance
+        return np.asarray(np.maximum(power, _LEAST))
+
+    def plane(self, shape: tuple[int, int]) -> Floats:
+        """Power at the frequencies of `scipy.fft.rfft2` of an image, (rows, cols // 2 + 1)."""
+        impulse = np.zeros(shape)
+        impulse[_DOWN, _RIGHT] = self.covariance
+        return np.asarray(np.maximum(fft.rfft2(impulse).real, _LEAST))
+
+
+def padded_shape(rows: NDArray[np.intp], cols: NDArray[np.intp]) -> tuple[int, int]:
+    """Shape of an image of some pixels, with room for the lags, that is transformed fast."""
+    height, width = (fft.next_fast_len(int(one.max()) + 1 + _REACH, True) for one in (rows, cols))
+    return height, width

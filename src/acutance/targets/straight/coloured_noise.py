@@ -1,0 +1,188 @@
+"""Noise of an edge's pixels that correlates: texture of the ground, or what interpolation left.
+
+The mean of such noise along the edge is a random profile, which an edge spread function (ESF) can
+follow. Of every frequency along the normal it has the power of the noise there, over the edge's
+length: grains of the ground hardly disturb high frequencies, and a sharpened product's noise hardly
+low ones. So the noise is white noise of the least power, and a profile beside it, a random process
+that is integrated out of the equations (generalised least squares; C. E. Rasmussen and C. K. I.
+Williams, Gaussian Processes for Machine Learning, 2006, section 2.7). Texture ends at the border of
+its ground as the border is blurred: each side has a process of its own, as large as its share in
+the pixels. What varies along the edge, such as a rotation of the line, is disturbed by noise that
+no profile has: such unknowns have the noise of their own frequencies.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import fft
+
+from acutance.curves.grid import Floats
+from acutance.numerics.noise_spectrum import NoiseSpectrum, padded_shape
+from acutance.numerics.normal_equations import Normal
+from acutance.targets.straight.spline import CELL, CELLS, HALF_SUPPORT
+
+__all__ = ["ColouredNoise", "RandomProfile", "places"]
+
+_SIZE: Final = CELLS + 3
+_PLACES: Final[Floats] = np.asarray(-HALF_SUPPORT + CELL * (np.arange(_SIZE) - 1.0))
+"""Where the cubic B-splines of an ESF are centred, in widths."""
+_APART: Final = np.abs(np.subtract.outer(np.arange(_SIZE), np.arange(_SIZE)))
+_FREQ_CPP: Final[Floats] = np.arange(0.0, 2.2, 0.02)
+"""Beyond 1.4 cycles per pixel, where the power of the diagonals comes again."""
+_INDEPENDENT_PX: Final = 8.0
+"""Standard deviation of the window of the profile's covariance, which is none beyond 9 px."""
+
+
+@dataclass(frozen=True, eq=False)
+class ColouredNoise:
+    """Spectra of the noise on the dark and on the bright side of an edge.
+
+    Attributes
+    ----------
+    spectra : pair of NoiseSpectrum
+    along : (2, k) array
+        Power along the normal, over that of white noise.
+    at : pair of (n,) int arrays
+        Rows and columns of the pixels, from 0.
+    """
+
+    spectra: tuple[NoiseSpectrum, NoiseSpectrum]
+    along: Floats
+    at: tuple[NDArray[np.intp], NDArray[np.intp]]
+
+    @classmethod
+    def of(
+        cls,
+        standard: Floats,
+        at: tuple[NDArray[np.intp], NDArray[np.intp]],
+        response: Floats,
+        normal: tuple[float, float],
+    ) -> ColouredNoise:
+        """From residuals about an edge.
+
+        Parameters
+        ----------
+        standard : (n,) array
+            In standard deviations, outliers bounded.
+        at : pair of (n,) int arrays
+            Rows and columns of the pixels, from 0.
+        response : (n,) array
+            Of the edge: 0 dark, 1 bright.
+        normal : (float, float)
+            Unit vector (x, y) across it.
+        """
+        dark, bright = (
+            NoiseSpectrum.of(standard[side], at[0][side], at[1][side])
+            for side in (response < 0.5, response >= 0.5)
+        )
+        along = np.stack([one.along(normal, _FREQ_CPP) for one in (dark, bright)])
+        return cls((dark, bright), along, at)
+
+    @property
+    def white(self) -> Floats:
+        """Variance of the white noise of either side, over that of all, (2,)."""
+        return np.asarray(np.minimum(self.along.min(axis=1), 1.0))
+
+    def profile(
+        self, sides: Floats, share: Floats, width_px: float, length_px: float
+    ) -> RandomProfile:
+        """The profile of the noise beside its white part, in coefficients of the ESF's spline.
+
+        Parameters
+        ----------
+        sides : (2,) array
+            Variance of the noise of either side.
+        share : (CELLS + 3,) array
+            Response of the edge at the `places` of the spline.
+        width_px : float
+            The unit of the spline.
+        length_px : float
+            Of the edge.
+        """
+        apart_px = CELL * width_px * np.arange(_SIZE)
+        # The spline passes no wave beyond the Nyquist frequency of its cells.
+        cycles = CELL * width_px * _FREQ_CPP
+        passed = np.where(cycles < 0.5, np.sinc(cycles) ** 4, np.inf)
+        waves = np.cos(2 * np.pi * apart_px[:, None] * _FREQ_CPP)
+        power = (self.along - self.white[:, None]) / (length_px * passed**2)
+        step_cpp = _FREQ_CPP[1] - _FREQ_CPP[0]
+        power[:, 1:] *= 2
+        by_lag = step_cpp * (power @ waves.T) * np.exp(-0.5 * (apart_px / _INDEPENDENT_PX) ** 2)
+        covariance = np.zeros((_SIZE, _SIZE))
+        for own, variance, lags in zip((1 - share, share), sides, by_lag, strict=True):
+            covariance += variance * np.outer(own, own) * lags[_APART]
+        return RandomProfile(covariance)
+
+    def disturbing(self, columns: Floats, sides: Floats) -> Floats:
+        """Variance of white noise that would disturb regressors as much, (q,).
+
+        Parameters
+        ----------
+        columns : (q, n) array
+        sides : (2,) array
+            Variance of the noise of either side.
+        """
+        shape = padded_shape(*self.at)
+        image = np.zeros((len(columns), *shape))
+        image[:, self.at[0], self.at[1]] = columns
+        power = np.abs(fft.rfft2(image)) ** 2
+        # The frequencies of the other half are not there.
+        power[:, :, 1 : (shape[1] + 1) // 2] *= 2
+        noise = 0.5 * sum(
+            variance * one.plane(shape) for variance, one in zip(sides, self.spectra, strict=True)
+        )
+        total = np.maximum(power.sum(axis=(1, 2)), 1e-300)
+        return np.asarray(np.tensordot(power, noise, 2) / total)
+
+
+def places() -> Floats:
+    """Where the coefficients of the ESF's spline stand, in widths, (CELLS + 3,)."""
+    return _PLACES
+
+
+@dataclass(frozen=True, eq=False)
+class RandomProfile:
+    """A random profile across an edge.
+
+    Attributes
+    ----------
+    covariance : (CELLS + 3, CELLS + 3) array
+        Of its coefficients in the spline of the ESF, in units of the noise of unit weight.
+    """
+
+    covariance: Floats
+
+    def integrated_out(self, normal: Normal, disturbing: Sequence[float] | Floats) -> Normal:
+        """The equations of pixels without what the profile explains.
+
+        Parameters
+        ----------
+        normal : Normal
+            Of the spline's coefficients, and q further unknowns.
+        disturbing : (q,) array
+            Variance of the noise that disturbs those, where that of unit weight is 1.
+        """
+        rows = normal.gram[:_SIZE]
+        explained = self._gain(normal)
+        gram = normal.gram - rows.T @ explained @ rows
+        projection = normal.projection - rows.T @ (explained @ normal.projection[:_SIZE])
+        # Regressors of a noise of their own weigh less, by themselves and beside others.
+        weight = np.concatenate([np.ones(_SIZE), 1 / np.maximum(disturbing, 1.0)])
+        gram *= np.minimum(weight[:, None], weight)
+        return replace(normal, gram=gram, projection=projection * weight)
+
+    def likeliest(self, normal: Normal, coefficients: Floats) -> Floats:
+        """The profile under given coefficients of spline and regressors, (CELLS + 3,)."""
+        left = normal.projection[:_SIZE] - normal.gram[:_SIZE] @ coefficients
+        return np.asarray(self._gain(normal) @ left)
+
+    def _gain(self, normal: Normal) -> Floats:
+        """Covariance of the profile as the pixels leave it, symmetric."""
+        seen = np.eye(_SIZE) + normal.gram[:_SIZE, :_SIZE] @ self.covariance
+        gain = np.linalg.solve(seen.T, self.covariance).T
+        return np.asarray(0.5 * (gain + gain.T))
