@@ -2,7 +2,8 @@
 
 The covariances of pixels some lags apart are tapered by Parzen's window, and transformed (R. B.
 Blackman and J. W. Tukey, The Measurement of Power Spectra, 1959; E. Parzen, Technometrics 3, 1961,
-167). Pixels may be missing: of every lag the pairs that there are count.
+167). Pixels may be missing. Sums over pairs are divided by the number of pixels, not of pairs: the
+power is nowhere negative then, and few pixels tell of no power that is much below the largest.
 """
 
 from __future__ import annotations
@@ -22,7 +23,6 @@ _REACH: Final = 6
 """Pixels this far apart are taken to be independent: grains of 1.5 px, and kernels of resampling,
 are within it."""
 _LAG: Final = np.arange(-_REACH, _REACH + 1)
-_MIN_PAIRS: Final = 20
 _LEAST: Final = 0.01
 """Of white noise: less is beyond what a few thousand pixels tell of a power."""
 
@@ -61,12 +61,10 @@ class NoiseSpectrum:
             Their pixels, from 0.
         """
         shape = padded_shape(rows, cols)
-        planes = np.zeros((2, *shape))
-        planes[0, rows, cols], planes[1, rows, cols] = residual, 1.0
-        sums, pairs = fft.irfft2(np.abs(fft.rfft2(planes)) ** 2, shape)[:, _DOWN, _RIGHT]
-        known = pairs > _MIN_PAIRS
-        covariance = np.where(known, sums / np.maximum(pairs, 1.0), 0.0) * _TAPER
-        return cls(covariance / covariance[covariance.size // 2])
+        image = np.zeros(shape)
+        image[rows, cols] = residual
+        sums = fft.irfft2(np.abs(fft.rfft2(image)) ** 2, shape)[_DOWN, _RIGHT]
+        return cls(sums * _TAPER / sums[sums.size // 2])
 
     def along(self, normal: tuple[float, float], freq_cpp: Floats) -> Floats:
         """Power at frequencies (k,) along a direction (x, y), (k,).

@@ -13,15 +13,17 @@ no profile has: such unknowns have the noise of their own frequencies.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
 
 from acutance.curves.grid import Floats
+from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA
 from acutance.numerics.noise_spectrum import NoiseSpectrum, padded_shape
 from acutance.numerics.normal_equations import Normal
 from acutance.targets.straight.spline import CELL, CELLS, HALF_SUPPORT
@@ -34,8 +36,22 @@ _PLACES: Final[Floats] = np.asarray(-HALF_SUPPORT + CELL * (np.arange(_SIZE) - 1
 _APART: Final = np.abs(np.subtract.outer(np.arange(_SIZE), np.arange(_SIZE)))
 _FREQ_CPP: Final[Floats] = np.arange(0.0, 2.2, 0.02)
 """Beyond 1.4 cycles per pixel, where the power of the diagonals comes again."""
+_PART_PX: Final = 4.0
+_SIGNIFICANT: Final = 3.0
 _INDEPENDENT_PX: Final = 8.0
 """Standard deviation of the window of the profile's covariance, which is none beyond 9 px."""
+
+
+class Scatter(NamedTuple):
+    """A power over the expected one, and how many squares it is the mean of."""
+
+    ratio: float
+    freedom: int
+
+    @property
+    def is_more(self) -> bool:
+        """Whether chance does not explain it."""
+        return self.ratio > 1 + _SIGNIFICANT * math.sqrt(2 / max(self.freedom, 1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,6 +103,33 @@ class ColouredNoise:
     def white(self) -> Floats:
         """Variance of the white noise of either side, over that of all, (2,)."""
         return np.asarray(np.minimum(self.along.min(axis=1), 1.0))
+
+    def scatter_along(self, standard: Floats, s: Floats, t: Floats, width_px: float) -> Scatter:
+        """How parts of the border scatter along it, over what this noise makes them.
+
+        Parts of a few pixels are multiplied by the first three derivatives of a line of the blur's
+        width: what a rough border, or processing of strong contrasts, adds to the noise is there.
+
+        Parameters
+        ----------
+        standard : (n,) array
+            Residuals in standard deviations, outliers bounded.
+        s, t : (n,) arrays
+            Distance of the pixels along the normal and along the line.
+        width_px : float
+            Full width at half maximum of the blur.
+        """
+        u = s * (FWHM_OF_SIGMA / width_px)
+        line = np.exp(-0.5 * u**2)
+        shapes = line * np.stack([u, u**2 - 1, u**3 - 3 * u])
+        part = np.floor((t - t.min()) / _PART_PX).astype(int)
+        parts = int(part.max()) + 1
+        sums = np.stack([np.bincount(part, one * standard, parts) for one in shapes])
+        squares = np.stack([np.bincount(part, one**2, parts) for one in shapes])
+        # Neighbouring parts of either sign: what all have in common is in the fit.
+        expected = self.disturbing(shapes * (1 - 2 * (part % 2)), np.ones(2))
+        ratio = np.sum(sums**2 / expected[:, None]) / np.sum(squares)
+        return Scatter(float(ratio), shapes.shape[0] * (parts - 1))
 
     def profile(
         self, sides: Floats, share: Floats, width_px: float, length_px: float

@@ -187,15 +187,14 @@ class Linear:
         floor = (NOISE_FLOOR * self.first_fit.height) ** 2
         scale = float(0.5 * (sides[0] + sides[1])) + floor
         both = (sides + floor) / scale
-        relative = self.over_pixels(both, roughness)
+        relative = self.over_pixels(both)
+        if roughness > 0:
+            relative *= 1 + roughness * self.steepness
         return NoiseModel(sides / scale, scale, relative, math.log(both[1] / both[0]))
 
-    def over_pixels(self, sides: Floats, roughness: float) -> Floats:
+    def over_pixels(self, sides: Floats) -> Floats:
         """Variance of the noise of every pixel, (n,), from that on the two plateaus, (2,)."""
-        variance = _between_levels(self.mean, float(sides[0]), float(sides[1]))
-        if roughness > 0:
-            variance *= 1 + roughness * self.steepness
-        return variance
+        return _between_levels(self.mean, float(sides[0]), float(sides[1]))
 
     def columns(self, model: LsfModel | None) -> list[Floats]:
         """All regressors other than the spline, those that depend on the LSF in the last array.

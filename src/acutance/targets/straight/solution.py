@@ -153,7 +153,8 @@ def solved_pass(
     noise = linear.noise(before, outlier, roughness)
     relative = noise.relative
     if coloured is not None:
-        relative = linear.over_pixels(noise.sides * coloured.white, roughness)
+        # What is there beside the white part is smooth, but for the roughness of the edge.
+        relative = noise.relative - linear.over_pixels(noise.sides * (1 - coloured.white))
         inflation = 1 / float(np.mean(noise.relative / relative))
     weight = outlier / relative
     columns = linear.columns(None if earlier is None else earlier.mean_model)

@@ -176,7 +176,10 @@ def _coloured(solved: Solution, found: Correlation, pixels: Pixels) -> ColouredN
     if not (first_fit.profile.is_edge and found.by_lag):
         return None
     standard = _bounded(solved.standard)
-    return ColouredNoise.of(standard, pixels.at, solved.linear.mean, first_fit.line.normal)
+    linear = solved.linear
+    noise = ColouredNoise.of(standard, pixels.at, linear.mean, first_fit.line.normal)
+    scatter = noise.scatter_along(standard, linear.s, linear.t, first_fit.blur.width_px)
+    return None if solved.roughness > 0 or scatter.is_more else noise
 
 
 def _has_settled_noise(solved: Solution, outlier: Floats) -> bool:
