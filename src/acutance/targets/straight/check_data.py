@@ -31,13 +31,11 @@ from acutance.targets.straight.check_loops import (
     slope_and_bend,
     standard_squares,
 )
+from acutance.targets.straight.fit_edge import SplineEdge
 from acutance.targets.straight.pixels import EdgeFit, EdgePixels
-from acutance.targets.straight.tuned import NOISE_FLOOR, STRUCTURE_OUTLIER_SIGMAS
+from acutance.targets.straight.tuned import MISFIT, NOISE_FLOOR, STRUCTURE_OUTLIER_SIGMAS
 
-__all__ = ["MISFIT", "STEEP_SHARE", "Border", "CheckData", "ratio_in_words", "regular"]
-
-MISFIT = 3e-4
-"""Residuals below this share of the contrast are the model's own, not noise."""
+__all__ = ["STEEP_SHARE", "Border", "CheckData", "ratio_in_words", "regular"]
 
 STEEP_SHARE: Final = 0.3
 """Pixels steeper than this share of the steepest lie on the border."""
@@ -296,8 +294,17 @@ class CheckData:
     @cached_property
     def bounded(self) -> Floats:
         """The residuals, outliers bounded, (n,)."""
+        return self._bounded(self.residual)
+
+    @cached_property
+    def unexplained(self) -> Floats:
+        """The same without what noise that correlates is taken to add to the profile, (n,)."""
+        explained = self.fit.random_profile if isinstance(self.fit, SplineEdge) else 0.0
+        return self._bounded(self.residual - explained)
+
+    def _bounded(self, residual: Floats) -> Floats:
         most = STRUCTURE_OUTLIER_SIGMAS * self.noise
-        return np.minimum(np.maximum(self.residual, -most), most)
+        return np.minimum(np.maximum(residual, -most), most)
 
     @cached_property
     def along(self) -> tuple[NDArray[np.intp], int]:

@@ -36,6 +36,9 @@ class SplineEdge(EdgeFit):
         Standard deviation of the noise on either side, in image units.
     correlation : Correlation
         Correlation of the noise, from the residuals.
+    random_profile : (n,) array
+        What noise that correlates is taken to add to the pixels all along the edge, as a share of
+        the contrast; it is part of the residual.
     weights : (n,) array
         Weight of every pixel used, 1 where it is no outlier.
     tail : float
@@ -55,6 +58,7 @@ class SplineEdge(EdgeFit):
     noise_dark: float
     noise_bright: float
     correlation: Correlation
+    random_profile: Floats
     weights: Floats
     tail: float
     ground: tuple[GroundSide, GroundSide]
@@ -130,7 +134,7 @@ def spline_edge(pixels: Pixels, solved: Solved) -> SplineEdge:
     return SplineEdge(
         line, response, dark, dark + height, s, (pixels.value - dark) / height,
         solution.residual / height, first_fit.blur, *solution.side_noise, solved.correlation,
-        solved.outlier, model.tail / height, solved.ground,
+        solved.random_profile / height, solved.outlier, model.tail / height, solved.ground,
         solved.causes, solved.pixels_alone, solved.seen.share,
     )  # fmt: skip
 

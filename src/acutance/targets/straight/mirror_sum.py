@@ -27,10 +27,10 @@ from acutance.curves.grid import Floats
 from acutance.numerics.compiled import compiled
 from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA
 from acutance.numerics.small_matrices import factorize, forward_substitution
-from acutance.targets.straight.check_data import MISFIT, CheckData, regular
+from acutance.targets.straight.check_data import CheckData, regular
 from acutance.targets.straight.check_loops import linear_at
 from acutance.targets.straight.ground_steps import near_ground
-from acutance.targets.straight.tuned import NEAR_GROUND_STEPS
+from acutance.targets.straight.tuned import MISFIT, NEAR_GROUND_STEPS
 
 __all__ = ["EVEN", "EVERY", "USUAL", "MirrorSum", "Weighed"]
 

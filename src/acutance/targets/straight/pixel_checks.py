@@ -12,7 +12,7 @@ from acutance.numerics.noise import median, outlier_share, smallest_step
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.question import PLACES
 from acutance.targets.region import RegionPixels
-from acutance.targets.straight.check_data import MISFIT, CheckData
+from acutance.targets.straight.check_data import CheckData
 from acutance.targets.straight.check_loops import far_side, rise_outwards, side_upwards
 from acutance.targets.straight.nonlinearity import find_curvature, gamma_of
 from acutance.targets.straight.rounding import level_step
@@ -25,6 +25,7 @@ from acutance.targets.straight.tuned import (
     MAX_OUTLIER_SHARE,
     MIN_PILED_PIXELS,
     MIN_SIDE_PIXELS,
+    MISFIT,
     NONLINEAR_LOG_ODDS,
     OUTLIER_SIGMAS,
     QUIET_SIDE,

@@ -15,6 +15,7 @@ from acutance.numerics.normal_equations import Normal
 from acutance.targets.straight.coloured_noise import ColouredNoise, RandomProfile, places
 from acutance.targets.straight.linear_model import Linear, NoiseModel
 from acutance.targets.straight.lsf import LsfModel
+from acutance.targets.straight.spline import combine
 from acutance.targets.straight.spline_equations import accumulate, renewed
 
 __all__ = ["OUTLYING", "Solution", "solved_pass"]
@@ -86,6 +87,15 @@ class Solution:
     def mean_model(self) -> LsfModel:
         """The same without its covariance: the next pass takes no more of it."""
         return self.linear.mean_model(self.posterior)
+
+    @property
+    def likeliest_noise(self) -> Floats:
+        """What the random profile adds to every pixel, in image units, (n,)."""
+        if self.random_profile is None:
+            return np.zeros(self.linear.s.size)
+        coefficients = self.linear.coefficients(self.posterior.beta)
+        ((cell, basis),) = self.linear.stencils
+        return combine(cell, basis, self.random_profile.likeliest(self.normal, coefficients))
 
     @property
     def rotation_rad(self) -> float:

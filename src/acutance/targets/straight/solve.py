@@ -29,8 +29,8 @@ from acutance.targets.straight.lsf import LsfModel
 from acutance.targets.straight.pixels import Pixels
 from acutance.targets.straight.pixels_alone import PixelsAlone
 from acutance.targets.straight.solution import OUTLYING, Solution, solved_pass
-from acutance.targets.straight.spline import CELLS
 from acutance.targets.straight.step_profile import Profile
+from acutance.targets.straight.tuned import MISFIT
 
 __all__ = ["Solved", "solve"]
 
@@ -65,6 +65,11 @@ class Solved:
     seen: AmongSensors
     outlier: Floats
     correlation: Correlation
+
+    @property
+    def random_profile(self) -> Floats:
+        """What noise that correlates is taken to add to every pixel, in image units, (n,)."""
+        return self.solution.likeliest_noise
 
     @property
     def causes(self) -> FitCauses:
@@ -163,10 +168,8 @@ def solve(
 def _seen_again(solved: Solution, seen: AmongSensors) -> Solution:
     """The last pass, with its own unknowns."""
     linear, posterior = seen.linear, seen.posterior
-    coefficients = linear.coefficients(posterior.beta)
-    if solved.random_profile is not None:
-        coefficients[: CELLS + 3] += solved.random_profile.likeliest(solved.normal, coefficients)
-    residual = linear.first_residual - linear.image(solved.columns, coefficients)
+    image = linear.image(solved.columns, linear.coefficients(posterior.beta))
+    residual = linear.first_residual - image
     return replace(solved, linear=linear, posterior=posterior, residual=residual)
 
 
@@ -176,6 +179,8 @@ def _coloured(solved: Solution, found: Correlation, pixels: Pixels) -> ColouredN
     if not (first_fit.profile.is_edge and found.by_lag):
         return None
     standard = _bounded(solved.standard)
+    if max(solved.side_noise) < MISFIT * first_fit.height:
+        return None
     linear = solved.linear
     noise = ColouredNoise.of(standard, pixels.at, linear.mean, first_fit.line.normal)
     scatter = noise.scatter_along(standard, linear.s, linear.t, first_fit.blur.width_px)

@@ -270,7 +270,7 @@ def profile(
     windows = [(ends[0], -near), (last_px + near, ends[1])]
     if not own_misfit:
         windows += [(-near, -steep), (-steep, last_px + steep), (last_px + steep, last_px + near)]
-    found_in = _repeated_profiles(s, data.t, data.bounded, np.array(windows)).tolist()
+    found_in = _repeated_profiles(s, data.t, data.unexplained, np.array(windows)).tolist()
     value = max([common for common, sure in found_in if sure > REPEATED_SIGMAS], default=0.0)
     most = max(0.0, *(sure for _, sure in found_in))
     found = (

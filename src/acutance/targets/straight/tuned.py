@@ -50,6 +50,7 @@ __all__ = [
     "MIN_SNR",
     "MIN_STRENGTH_SHARE",
     "MIN_TRUSTED_SNR",
+    "MISFIT",
     "NEAR_GROUND_STEPS",
     "NEAR_TOLERANCE",
     "NOISE_FLOOR",
@@ -111,6 +112,8 @@ KERNEL_LOG_WIDTH: Final = 0.12
 """Standard deviation of the logarithm of the width: sensors of other blur say less."""
 KERNEL_FLOOR: Final = 1e-3
 """Least standard deviation of a coordinate of a family: families of one cause vary in few."""
+MISFIT: Final = 3e-4
+"""Residuals below this share of the contrast are the model's own, not noise."""
 NOISE_FLOOR: Final = 2e-4
 """The smallest noise that is told from the arithmetic's and the model's own."""
 BROAD_PRIOR: Final = 10.0
