@@ -19,7 +19,7 @@ from acutance.curves.grid import Floats
 
 __all__ = ["NoiseSpectrum"]
 
-_REACH: Final = 6
+_REACH: Final = 8
 """Pixels this far apart are taken to be independent: grains of 1.5 px, and kernels of resampling,
 are within it."""
 _LAG: Final = np.arange(-_REACH, _REACH + 1)
@@ -43,8 +43,8 @@ class NoiseSpectrum:
 
     Attributes
     ----------
-    covariance : (169,) array
-        Tapered covariance of pixels -6 to 6 rows and columns apart, over the variance.
+    covariance : (289,) array
+        Tapered covariance of pixels -8 to 8 rows and columns apart, over the variance.
     """
 
     covariance: Floats

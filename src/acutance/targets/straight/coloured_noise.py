@@ -39,7 +39,7 @@ _FREQ_CPP: Final[Floats] = np.arange(0.0, 2.2, 0.02)
 _PART_PX: Final = 4.0
 _SIGNIFICANT: Final = 3.0
 _INDEPENDENT_PX: Final = 8.0
-"""Standard deviation of the window of the profile's covariance, which is none beyond 9 px."""
+"""Standard deviation of the window of the profile's covariance, which is none beyond 12 px."""
 
 
 class Scatter(NamedTuple):

@@ -53,7 +53,7 @@ _MIN_PARTS, _MAX_PARTS = 4, 12
 _MAX_OFFSET_PX = 0.15
 _MAX_ASYMMETRY, _ANY_ASYMMETRY = 0.08, 0.1
 """Caution where a deviation of RER is small, and whatever it is."""
-_TEXTURED, _TEXTURED_ASYMMETRY, _TEXTURED_RER_STDS = 3.0, 0.015, 1.2
+_TEXTURED, _TEXTURED_ASYMMETRY, _TEXTURED_RER_STDS = 3.0, 0.02, 2.0
 """Noise power along the normal over that of white noise from which on it is the ground's texture
 (resampled products have 1 to 2.5), and the limits there."""
 _NOTED_RER_STDS, _MAX_RER_STDS = 0.5, 3.0
