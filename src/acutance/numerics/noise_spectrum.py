@@ -56,7 +56,7 @@ class NoiseSpectrum:
         Parameters
         ----------
         residual : (n,) array
-            Outliers bounded.
+            Outliers bounded; where all are 0 the spectrum is that of white noise.
         rows, cols : (n,) int arrays
             Their pixels, from 0.
         """
@@ -64,7 +64,10 @@ class NoiseSpectrum:
         image = np.zeros(shape)
         image[rows, cols] = residual
         sums = fft.irfft2(np.abs(fft.rfft2(image)) ** 2, shape)[_DOWN, _RIGHT]
-        return cls(sums * _TAPER / sums[sums.size // 2])
+        middle = sums.size // 2
+        if not sums[middle] > 0:
+            return cls(np.eye(1, sums.size, middle)[0])
+        return cls(sums * _TAPER / sums[middle])
 
     def along(self, normal: tuple[float, float], freq_cpp: Floats) -> Floats:
         """Power at frequencies (k,) along a direction (x, y), (k,).

@@ -27,6 +27,7 @@ from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA
 from acutance.numerics.noise_spectrum import NoiseSpectrum, padded_shape
 from acutance.numerics.normal_equations import Normal
 from acutance.targets.straight.spline import CELL, CELLS, HALF_SUPPORT
+from acutance.targets.straight.tuned import BORDER_STRIP
 
 __all__ = ["ColouredNoise", "RandomProfile", "places"]
 
@@ -36,6 +37,7 @@ _PLACES: Final[Floats] = np.asarray(-HALF_SUPPORT + CELL * (np.arange(_SIZE) - 1
 _APART: Final = np.abs(np.subtract.outer(np.arange(_SIZE), np.arange(_SIZE)))
 _FREQ_CPP: Final[Floats] = np.arange(0.0, 2.2, 0.02)
 """Beyond 1.4 cycles per pixel, where the power of the diagonals comes again."""
+_STRIP_PX: Final = 1.0
 _PART_PX: Final = 4.0
 _SIGNIFICANT: Final = 3.0
 _INDEPENDENT_PX: Final = 8.0
@@ -157,8 +159,15 @@ class ColouredNoise:
         power[:, 1:] *= 2
         by_lag = step_cpp * (power @ waves.T) * np.exp(-0.5 * (apart_px / _INDEPENDENT_PX) ** 2)
         covariance = np.zeros((_SIZE, _SIZE))
+        # What of the noise ends at the border, and what is there besides, of a half each.
+        rest = np.sqrt(np.maximum(share * (1 - share), 0.0))
+        there = np.outer(rest, rest)
         for own, variance, lags in zip((1 - share, share), sides, by_lag, strict=True):
-            covariance += variance * np.outer(own, own) * lags[_APART]
+            covariance += variance * (np.outer(own, own) + there) * lags[_APART]
+        # What no pixel shows beside a border: a strip along it within the blur.
+        colour = 1 - float(self.white @ sides) / float(sides.sum())
+        along = np.exp(-0.5 * (apart_px / _STRIP_PX) ** 2)
+        covariance += BORDER_STRIP**2 * colour * float(sides.mean()) * there * along[_APART]
         return RandomProfile(covariance)
 
     def disturbing(self, columns: Floats, sides: Floats) -> Floats:

@@ -195,7 +195,7 @@ def _random_profile(linear: Linear, noise: NoiseModel, coloured: ColouredNoise) 
     width_px = linear.first_fit.blur.width_px
     share, _ = linear.first_fit.blur.esf_and_lsf(places() * width_px)
     reach_px = min(-float(linear.s.min()), float(linear.s.max()))
-    length_px = np.count_nonzero(np.abs(linear.s) < reach_px) / (2 * reach_px)
+    length_px = max(np.count_nonzero(np.abs(linear.s) < reach_px) / (2 * reach_px), 1.0)
     return coloured.profile(noise.sides, share, width_px, length_px)
 
 

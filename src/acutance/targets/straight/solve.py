@@ -30,7 +30,7 @@ from acutance.targets.straight.pixels import Pixels
 from acutance.targets.straight.pixels_alone import PixelsAlone
 from acutance.targets.straight.solution import OUTLYING, Solution, solved_pass
 from acutance.targets.straight.step_profile import Profile
-from acutance.targets.straight.tuned import MISFIT
+from acutance.targets.straight.tuned import MIN_SIDE_PIXELS, MISFIT
 
 __all__ = ["Solved", "solve"]
 
@@ -179,9 +179,11 @@ def _coloured(solved: Solution, found: Correlation, pixels: Pixels) -> ColouredN
     if not (first_fit.profile.is_edge and found.by_lag):
         return None
     standard = _bounded(solved.standard)
-    if max(solved.side_noise) < MISFIT * first_fit.height:
-        return None
     linear = solved.linear
+    bright = int(np.count_nonzero(linear.mean >= 0.5))
+    is_seen = max(solved.side_noise) > MISFIT * first_fit.height
+    if not (is_seen and MIN_SIDE_PIXELS <= bright <= linear.mean.size - MIN_SIDE_PIXELS):
+        return None
     noise = ColouredNoise.of(standard, pixels.at, linear.mean, first_fit.line.normal)
     scatter = noise.scatter_along(standard, linear.s, linear.t, first_fit.blur.width_px)
     return None if solved.roughness > 0 or scatter.is_more else noise
