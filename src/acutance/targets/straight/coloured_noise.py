@@ -27,7 +27,7 @@ from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA
 from acutance.numerics.noise_spectrum import NoiseSpectrum, padded_shape
 from acutance.numerics.normal_equations import Normal
 from acutance.targets.straight.spline import CELL, CELLS, HALF_SUPPORT
-from acutance.targets.straight.tuned import BORDER_STRIP
+from acutance.targets.straight.tuned import BORDER_STRIP, MAX_RESAMPLED_POWER
 
 __all__ = ["ColouredNoise", "RandomProfile", "places"]
 
@@ -106,6 +106,11 @@ class ColouredNoise:
         """Variance of the white noise of either side, over that of all, (2,)."""
         return np.asarray(np.minimum(self.along.min(axis=1), 1.0))
 
+    @property
+    def _ground(self) -> Floats:
+        """Share of the noise of either side that is the ground's, no resampled product's, (2,)."""
+        return np.asarray(np.maximum(1 - MAX_RESAMPLED_POWER / self.along.max(axis=1), 0.0))
+
     def scatter_along(self, standard: Floats, s: Floats, t: Floats, width_px: float) -> Scatter:
         """How parts of the border scatter along it, over what this noise makes them.
 
@@ -165,9 +170,9 @@ class ColouredNoise:
         for own, variance, lags in zip((1 - share, share), sides, by_lag, strict=True):
             covariance += variance * (np.outer(own, own) + there) * lags[_APART]
         # What no pixel shows beside a border: a strip along it within the blur.
-        colour = 1 - float(self.white @ sides) / float(sides.sum())
         along = np.exp(-0.5 * (apart_px / _STRIP_PX) ** 2)
-        covariance += BORDER_STRIP**2 * colour * float(sides.mean()) * there * along[_APART]
+        strip = BORDER_STRIP**2 * float(np.mean(sides * self._ground))
+        covariance += strip * there * along[_APART]
         return RandomProfile(covariance)
 
     def disturbing(self, columns: Floats, sides: Floats) -> Floats:

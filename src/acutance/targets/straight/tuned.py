@@ -39,6 +39,7 @@ __all__ = [
     "MAX_FINE_STEP",
     "MAX_NOISE_CORRELATION",
     "MAX_OUTLIER_SHARE",
+    "MAX_RESAMPLED_POWER",
     "MAX_SENSOR_MISFIT",
     "MAX_TOLERANCE",
     "MIN_CONTRAST_SHARE",
@@ -113,16 +114,18 @@ KERNEL_LOG_WIDTH: Final = 0.12
 """Standard deviation of the logarithm of the width: sensors of other blur say less."""
 KERNEL_FLOOR: Final = 1e-3
 """Least standard deviation of a coordinate of a family: families of one cause vary in few."""
+MAX_RESAMPLED_POWER: Final = 2.5
+"""Largest power of the noise of resampled products, over that of white noise: texture has more."""
 MISFIT: Final = 3e-4
 """Residuals below this share of the contrast are the model's own, not noise."""
 NOISE_FLOOR: Final = 2e-4
 """The smallest noise that is told from the arithmetic's and the model's own."""
-BORDER_STRIP: Final = 1.0
+BORDER_STRIP: Final = 1.2
 """Standard deviation of a strip along the border of textured ground, narrower than the blur, over
 that of the texture: ground at its border is not quite that beside it. Of 600 clean edges of
 landscapes (eleven families of sensors) 96 % of the intervals at Nyquist and of RER hold then;
 without it 94 and 90 %, and 2.3 % of the edges called good, whatever lies beside them, are off by
-more than 3 deviations, with it 1.1."""
+more than 3 deviations, with it .8."""
 BROAD_PRIOR: Final = 10.0
 """Width of a prior that says nothing of the LSF, relative to the sensors that were drawn: of what
 the pixels alone say chi-square at the true OTF is then .7 of its freedom over all families (at 3 it
