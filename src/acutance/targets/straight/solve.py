@@ -30,7 +30,7 @@ from acutance.targets.straight.pixels import Pixels
 from acutance.targets.straight.pixels_alone import PixelsAlone
 from acutance.targets.straight.solution import OUTLYING, Solution, solved_pass
 from acutance.targets.straight.step_profile import Profile
-from acutance.targets.straight.tuned import MIN_SIDE_PIXELS, MISFIT
+from acutance.targets.straight.tuned import MIN_SPECTRUM_PIXELS, MISFIT
 
 __all__ = ["Solved", "solve"]
 
@@ -181,8 +181,8 @@ def _coloured(solved: Solution, found: Correlation, pixels: Pixels) -> ColouredN
     standard = _bounded(solved.standard)
     linear = solved.linear
     bright = int(np.count_nonzero(linear.mean >= 0.5))
-    is_seen = max(solved.side_noise) > MISFIT * first_fit.height
-    if not (is_seen and MIN_SIDE_PIXELS <= bright <= linear.mean.size - MIN_SIDE_PIXELS):
+    few = min(bright, linear.mean.size - bright) < MIN_SPECTRUM_PIXELS
+    if few or max(solved.side_noise) < MISFIT * first_fit.height:
         return None
     noise = ColouredNoise.of(standard, pixels.at, linear.mean, first_fit.line.normal)
     scatter = noise.scatter_along(standard, linear.s, linear.t, first_fit.blur.width_px)
