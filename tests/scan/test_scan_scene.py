@@ -247,20 +247,19 @@ def test_more_light_in_a_halo_than_optics_scatter_is_said(share, sigma_px, count
     assert check.severity == "caution"
 
 
-def test_where_nearly_all_edges_contradict_a_sensor_the_scan_is_doubtful(ideal, few_forms):
+def test_where_nearly_all_edges_contradict_a_sensor_the_scan_is_doubtful(ideal):
     """A landscape decimated four times without a filter: of 275 edges 20 pass, by chance."""
     fine, _ = simulate.landscape(
         SENSOR, shape=(2400, 2400), snr=60, rng=np.random.default_rng((0, 7))
     )
-    with few_forms():
-        scene = ac.scan_scene(fine[::4, ::4])
+    scene = ac.scan_scene(fine[::4, ::4])
     check = share_of(scene)
     trusted = np.isin(scene.edges.verdict, ["good", "usable"]).sum()
     measured = (scene.edges.verdict != "rejected").sum()
     assert check.value == pytest.approx(trusted / measured)
     assert check.value < 0.15
     assert not check.passed
-    assert scene.verdict.word in ("doubtful", "invalid")
+    assert scene.verdict.word == "doubtful"
     assert f"{measured} edges that could be measured" in check.message
     _, _, plain = ideal
     assert share_of(plain).value > 0.9

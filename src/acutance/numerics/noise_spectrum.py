@@ -17,7 +17,7 @@ from scipy import fft
 
 from acutance.curves.grid import Floats
 
-__all__ = ["NoiseSpectrum"]
+__all__ = ["NoiseSpectrum", "padded_shape"]
 
 _REACH: Final = 8
 """Pixels this far apart are taken to be independent: grains of 1.5 px, and kernels of resampling,

@@ -38,7 +38,9 @@ _APART: Final = np.abs(np.subtract.outer(np.arange(_SIZE), np.arange(_SIZE)))
 _FREQ_CPP: Final[Floats] = np.arange(0.0, 2.2, 0.02)
 """Beyond 1.4 cycles per pixel, where the power of the diagonals comes again."""
 _STRIP_PX: Final = 1.0
+"""Standard deviation of the strip's profile; wider ones are seen beside the blur."""
 _PART_PX: Final = 4.0
+"""Length of the parts of a border that are compared."""
 _SIGNIFICANT: Final = 3.0
 _INDEPENDENT_PX: Final = 8.0
 """Standard deviation of the window of the profile's covariance, which is none beyond 12 px."""

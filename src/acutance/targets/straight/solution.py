@@ -161,11 +161,12 @@ def solved_pass(
     if earlier is not None and not linear.first_fit.profile.is_edge:
         before = earlier.residual
     noise = linear.noise(before, outlier, roughness)
-    relative = noise.relative
+    relative, per_fitted = noise.relative, 1.0
     if coloured is not None:
         # What is there beside the white part is smooth, but for the roughness of the edge.
         relative = noise.relative - linear.over_pixels(noise.sides * (1 - coloured.white))
-        inflation = 1 / float(np.mean(noise.relative / relative))
+        # Residuals are as large as all of the noise, at weights for its white part.
+        per_fitted = inflation = 1 / float(np.mean(noise.relative / relative))
     weight = outlier / relative
     columns = linear.columns(None if earlier is None else earlier.mean_model)
     normal = left = _equations(linear, weight, columns, float(np.add.reduce(outlier)), earlier)
@@ -176,11 +177,11 @@ def solved_pass(
         left = profile.integrated_out(normal, _disturbing(columns, relative, noise, coloured))
         equations = left.combined(linear.design)
     posterior = regress(
-        equations, linear.prior, noise.scale / inflation, inflation,
+        equations, linear.prior, noise.scale / per_fitted, inflation,
         None if earlier is None else earlier.posterior, pixels,
     )  # fmt: skip
     residual = linear.first_residual - linear.image(columns, linear.coefficients(posterior.beta))
-    variance = posterior.variance if coloured is None else posterior.variance * inflation
+    variance = posterior.variance * per_fitted
     standard = residual / np.sqrt(variance * noise.relative)
     dark, bright = np.sqrt(variance * noise.sides).tolist()
     return Solution(
