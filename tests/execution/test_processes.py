@@ -165,3 +165,16 @@ def test_a_killed_process_is_an_error_that_says_what_to_do(tmp_path, all_elsewhe
             else list(results_in_turn(killed, tasks, workers=2))
         )
     assert isinstance(found.value, AcutanceError)
+
+
+def killed_meanwhile(here):
+    """Ends every process but that of the test, which goes on."""
+    if os.getpid() != here:
+        os._exit(1)
+    time.sleep(0.0005)
+
+
+def test_tasks_that_were_done_here_do_not_break_the_end_of_a_broken_pool():
+    # Pytest reports what fails in another thread.
+    with pytest.raises(WorkerError, match="killed"):
+        list(results_in_turn(killed_meanwhile, [os.getpid()] * 20_000, workers=3))

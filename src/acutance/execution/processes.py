@@ -11,7 +11,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures import Future, InvalidStateError, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
@@ -127,7 +127,7 @@ def _run_in_processes(
             with _interrupts_held_back():
                 for first in starts:
                     some = tasks[first : first + size]
-                    started[pool.submit(_work_through, work, list(some))] = first
+                    started[_submitted(pool, work, some)] = first
             for future in as_completed(started):
                 keep_all(future)
                 # What was kept is not to fill the memory of a long run.
@@ -138,6 +138,23 @@ def _run_in_processes(
             if not future.cancelled() and future.exception() is None:
                 keep_all(future)
         raise
+
+
+class _Cancellable(Future[Result]):
+    """Results that may be cancelled while the pool breaks."""
+
+    def set_exception(self, exception: BaseException | None) -> None:
+        # Before Python 3.12.1 the pool's own thread ends with a traceback.
+        with suppress(InvalidStateError):
+            super().set_exception(exception)
+
+
+def _submitted(
+    pool: ProcessPoolExecutor, work: Callable[[Task], Result], tasks: Sequence[Task]
+) -> Future[list[Result]]:
+    future = pool.submit(_work_through, work, list(tasks))
+    future.__class__ = _Cancellable
+    return future
 
 
 @contextmanager
@@ -208,7 +225,7 @@ def results_in_turn(
         while waiting:
             with _interrupts_held_back():
                 for task in islice(todo, _WAITING_PER_WORKER * workers - len(waiting)):
-                    waiting.append(_Waiting(task, pool.submit(_work_through, work, [task])))
+                    waiting.append(_Waiting(task, _submitted(pool, work, [task])))
             if waiting[0].results.done() or not _work_here(work, waiting):
                 yield from waiting.popleft().results.result()
 
