@@ -45,9 +45,12 @@ class NoiseSpectrum:
     ----------
     covariance : (289,) array
         Tapered covariance of pixels -8 to 8 rows and columns apart, over the variance.
+    least : float
+        Power that is taken at least, at every frequency.
     """
 
     covariance: Floats
+    least: float = _LEAST
 
     @classmethod
     def of(cls, residual: Floats, rows: NDArray[np.intp], cols: NDArray[np.intp]) -> NoiseSpectrum:
@@ -76,13 +79,13 @@ class NoiseSpectrum:
         """
         along_px = normal[0] * _RIGHT + normal[1] * _DOWN
         power = np.cos(2 * np.pi * freq_cpp[:, None] * along_px) @ self.covariance
-        return np.asarray(np.maximum(power, _LEAST))
+        return np.asarray(np.maximum(power, self.least))
 
     def plane(self, shape: tuple[int, int]) -> Floats:
         """Power at the frequencies of `scipy.fft.rfft2` of an image, (rows, cols // 2 + 1)."""
         impulse = np.zeros(shape)
         impulse[_DOWN, _RIGHT] = self.covariance
-        return np.asarray(np.maximum(fft.rfft2(impulse).real, _LEAST))
+        return np.asarray(np.maximum(fft.rfft2(impulse).real, self.least))
 
 
 def padded_shape(rows: NDArray[np.intp], cols: NDArray[np.intp]) -> tuple[int, int]:

@@ -1,7 +1,7 @@
-"""Noise of an edge's pixels that correlates: texture of the ground, or what interpolation left.
+"""Noise of a straight target's pixels that correlates: texture, or what interpolation left.
 
-The mean of such noise along the edge is a random profile, which an edge spread function (ESF) can
-follow. Of every frequency along the normal it has the power of the noise there, over the edge's
+The mean of such noise along the line is a random profile, which an edge spread function (ESF) can
+follow. Of every frequency along the normal it has the power of the noise there, over the line's
 length: grains of the ground hardly disturb high frequencies, and a sharpened product's noise hardly
 low ones. So the noise is white noise of the least power, and a profile beside it, a random process
 that is integrated out of the equations (generalised least squares; C. E. Rasmussen and C. K. I.
@@ -25,16 +25,14 @@ from scipy import fft
 from acutance.curves.grid import Floats
 from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA
 from acutance.numerics.noise_spectrum import NoiseSpectrum, padded_shape
-from acutance.numerics.normal_equations import Normal
-from acutance.targets.straight.spline import CELL, CELLS, HALF_SUPPORT
-from acutance.targets.straight.tuned import BORDER_STRIP, MAX_RESAMPLED_POWER
+from acutance.targets.straight.tuned import (
+    BORDER_STRIP,
+    MAX_RESAMPLED_POWER,
+    MIN_SPECTRUM_PIXELS,
+)
 
-__all__ = ["ColouredNoise", "RandomProfile", "places"]
+__all__ = ["ColouredNoise"]
 
-_SIZE: Final = CELLS + 3
-_PLACES: Final[Floats] = np.asarray(-HALF_SUPPORT + CELL * (np.arange(_SIZE) - 1.0))
-"""Where the cubic B-splines of an ESF are centred, in widths."""
-_APART: Final = np.abs(np.subtract.outer(np.arange(_SIZE), np.arange(_SIZE)))
 _FREQ_CPP: Final[Floats] = np.arange(0.0, 2.2, 0.02)
 """Beyond 1.4 cycles per pixel, where the power of the diagonals comes again."""
 _STRIP_PX: Final = 1.0
@@ -60,7 +58,7 @@ class Scatter(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class ColouredNoise:
-    """Spectra of the noise on the dark and on the bright side of an edge.
+    """Spectra of the noise on the dark and on the bright side of a straight target.
 
     Attributes
     ----------
@@ -83,7 +81,10 @@ class ColouredNoise:
         response: Floats,
         normal: tuple[float, float],
     ) -> ColouredNoise:
-        """From residuals about an edge.
+        """From residuals about an edge or a pulse.
+
+        Of a side with too few pixels for a spectrum the noise is as much at every frequency as
+        white noise has there, or as the other side's.
 
         Parameters
         ----------
@@ -92,13 +93,16 @@ class ColouredNoise:
         at : pair of (n,) int arrays
             Rows and columns of the pixels, from 0.
         response : (n,) array
-            Of the edge: 0 dark, 1 bright.
+            Of the target: 0 dark, 1 bright.
         normal : (float, float)
             Unit vector (x, y) across it.
         """
+        sides = [response < 0.5, response >= 0.5]
+        dark, bright = (NoiseSpectrum.of(standard[one], at[0][one], at[1][one]) for one in sides)
+        few = [np.count_nonzero(one) < MIN_SPECTRUM_PIXELS for one in sides]
         dark, bright = (
-            NoiseSpectrum.of(standard[side], at[0][side], at[1][side])
-            for side in (response < 0.5, response >= 0.5)
+            replace(bright, least=1.0) if few[0] else dark,
+            replace(dark, least=1.0) if few[1] else bright,
         )
         along = np.stack([one.along(normal, _FREQ_CPP) for one in (dark, bright)])
         return cls((dark, bright), along, at)
@@ -113,8 +117,10 @@ class ColouredNoise:
         """Share of the noise of either side that is the ground's, no resampled product's, (2,)."""
         return np.asarray(np.maximum(1 - MAX_RESAMPLED_POWER / self.along.max(axis=1), 0.0))
 
-    def scatter_along(self, standard: Floats, s: Floats, t: Floats, width_px: float) -> Scatter:
-        """How parts of the border scatter along it, over what this noise makes them.
+    def scatter_along(
+        self, standard: Floats, distances: Sequence[Floats], t: Floats, width_px: float
+    ) -> Scatter:
+        """How parts of the borders scatter along them, over what this noise makes them.
 
         Parts of a few pixels are multiplied by the first three derivatives of a line of the blur's
         width: what a rough border, or processing of strong contrasts, adds to the noise is there.
@@ -123,14 +129,16 @@ class ColouredNoise:
         ----------
         standard : (n,) array
             Residuals in standard deviations, outliers bounded.
-        s, t : (n,) arrays
-            Distance of the pixels along the normal and along the line.
+        distances : sequence of (n,) arrays
+            Of the pixels along the normal, from every border.
+        t : (n,) array
+            Along the line.
         width_px : float
             Full width at half maximum of the blur.
         """
-        u = s * (FWHM_OF_SIGMA / width_px)
+        u = np.stack(distances) * (FWHM_OF_SIGMA / width_px)
         line = np.exp(-0.5 * u**2)
-        shapes = line * np.stack([u, u**2 - 1, u**3 - 3 * u])
+        shapes = np.concatenate([line * u, line * (u**2 - 1), line * (u**3 - 3 * u)])
         part = np.floor((t - t.min()) / _PART_PX).astype(int)
         parts = int(part.max()) + 1
         sums = np.stack([np.bincount(part, one * standard, parts) for one in shapes])
@@ -140,42 +148,46 @@ class ColouredNoise:
         ratio = np.sum(sums**2 / expected[:, None]) / np.sum(squares)
         return Scatter(float(ratio), shapes.shape[0] * (parts - 1))
 
-    def profile(
-        self, sides: Floats, share: Floats, width_px: float, length_px: float
-    ) -> RandomProfile:
-        """The profile of the noise beside its white part, in coefficients of the ESF's spline.
+    def profile_covariance(
+        self, sides: Floats, share: Floats, cell_px: float, length_px: float
+    ) -> Floats:
+        """Of the profile of the noise beside its white part, in coefficients of a spline.
 
         Parameters
         ----------
         sides : (2,) array
             Variance of the noise of either side.
-        share : (CELLS + 3,) array
-            Response of the edge at the `places` of the spline.
-        width_px : float
-            The unit of the spline.
+        share : (m,) array
+            Response of the target (0 dark, 1 bright) where the spline's coefficients stand.
+        cell_px : float
+            From one to the next.
         length_px : float
-            Of the edge.
+            Of the target.
+
+        Returns
+        -------
+        (m, m) array
         """
-        apart_px = CELL * width_px * np.arange(_SIZE)
+        number = np.arange(share.size)
+        apart, apart_px = np.abs(np.subtract.outer(number, number)), cell_px * number
         # The spline passes no wave beyond the Nyquist frequency of its cells.
-        cycles = CELL * width_px * _FREQ_CPP
+        cycles = cell_px * _FREQ_CPP
         passed = np.where(cycles < 0.5, np.sinc(cycles) ** 4, np.inf)
         waves = np.cos(2 * np.pi * apart_px[:, None] * _FREQ_CPP)
         power = (self.along - self.white[:, None]) / (length_px * passed**2)
         step_cpp = _FREQ_CPP[1] - _FREQ_CPP[0]
         power[:, 1:] *= 2
         by_lag = step_cpp * (power @ waves.T) * np.exp(-0.5 * (apart_px / _INDEPENDENT_PX) ** 2)
-        covariance = np.zeros((_SIZE, _SIZE))
+        covariance = np.zeros(apart.shape)
         # What of the noise ends at the border, and what is there besides, of a half each.
         rest = np.sqrt(np.maximum(share * (1 - share), 0.0))
         there = np.outer(rest, rest)
         for own, variance, lags in zip((1 - share, share), sides, by_lag, strict=True):
-            covariance += variance * (np.outer(own, own) + there) * lags[_APART]
+            covariance += variance * (np.outer(own, own) + there) * lags[apart]
         # What no pixel shows beside a border: a strip along it within the blur.
         along = np.exp(-0.5 * (apart_px / _STRIP_PX) ** 2)
         strip = BORDER_STRIP**2 * float(np.mean(sides * self._ground))
-        covariance += strip * there * along[_APART]
-        return RandomProfile(covariance)
+        return np.asarray(covariance + strip * there * along[apart])
 
     def disturbing(self, columns: Floats, sides: Floats) -> Floats:
         """Variance of white noise that would disturb regressors as much, (q,).
@@ -197,51 +209,3 @@ class ColouredNoise:
         )
         total = np.maximum(power.sum(axis=(1, 2)), 1e-300)
         return np.asarray(np.tensordot(power, noise, 2) / total)
-
-
-def places() -> Floats:
-    """Where the coefficients of the ESF's spline stand, in widths, (CELLS + 3,)."""
-    return _PLACES
-
-
-@dataclass(frozen=True, eq=False)
-class RandomProfile:
-    """A random profile across an edge.
-
-    Attributes
-    ----------
-    covariance : (CELLS + 3, CELLS + 3) array
-        Of its coefficients in the spline of the ESF, in units of the noise of unit weight.
-    """
-
-    covariance: Floats
-
-    def integrated_out(self, normal: Normal, disturbing: Sequence[float] | Floats) -> Normal:
-        """The equations of pixels without what the profile explains.
-
-        Parameters
-        ----------
-        normal : Normal
-            Of the spline's coefficients, and q further unknowns.
-        disturbing : (q,) array
-            Variance of the noise that disturbs those, where that of unit weight is 1.
-        """
-        rows = normal.gram[:_SIZE]
-        explained = self._gain(normal)
-        gram = normal.gram - rows.T @ explained @ rows
-        projection = normal.projection - rows.T @ (explained @ normal.projection[:_SIZE])
-        # Regressors of a noise of their own weigh less, by themselves and beside others.
-        weight = np.concatenate([np.ones(_SIZE), 1 / np.maximum(disturbing, 1.0)])
-        gram *= np.minimum(weight[:, None], weight)
-        return replace(normal, gram=gram, projection=projection * weight)
-
-    def likeliest(self, normal: Normal, coefficients: Floats) -> Floats:
-        """The profile under given coefficients of spline and regressors, (CELLS + 3,)."""
-        left = normal.projection[:_SIZE] - normal.gram[:_SIZE] @ coefficients
-        return np.asarray(self._gain(normal) @ left)
-
-    def _gain(self, normal: Normal) -> Floats:
-        """Covariance of the profile as the pixels leave it, symmetric."""
-        seen = np.eye(_SIZE) + normal.gram[:_SIZE, :_SIZE] @ self.covariance
-        gain = np.linalg.solve(seen.T, self.covariance).T
-        return np.asarray(0.5 * (gain + gain.T))

@@ -12,10 +12,10 @@ from acutance.curves.grid import Floats
 from acutance.numerics.compiled import compiled
 from acutance.numerics.marginal_likelihood import Posterior, regress
 from acutance.numerics.normal_equations import Normal
-from acutance.targets.straight.coloured_noise import ColouredNoise, RandomProfile, places
+from acutance.targets.straight.coloured_noise import ColouredNoise
 from acutance.targets.straight.linear_model import Linear, NoiseModel
 from acutance.targets.straight.lsf import LsfModel
-from acutance.targets.straight.spline import combine
+from acutance.targets.straight.random_profile import RandomProfile, random_profile
 from acutance.targets.straight.spline_equations import accumulate, renewed
 
 __all__ = ["OUTLYING", "Solution", "solved_pass"]
@@ -93,9 +93,7 @@ class Solution:
         """What the random profile adds to every pixel, in image units, (n,)."""
         if self.random_profile is None:
             return np.zeros(self.linear.s.size)
-        coefficients = self.linear.coefficients(self.posterior.beta)
-        ((cell, basis),) = self.linear.stencils
-        return combine(cell, basis, self.random_profile.likeliest(self.normal, coefficients))
+        return self.random_profile.likeliest(self.linear.coefficients(self.posterior.beta))
 
     @property
     def rotation_rad(self) -> float:
@@ -173,8 +171,10 @@ def solved_pass(
     equations = pixels = normal.combined(linear.design)
     profile = None
     if coloured is not None:
-        profile = _random_profile(linear, noise, coloured)
-        left = profile.integrated_out(normal, _disturbing(columns, relative, noise, coloured))
+        profile = random_profile(linear, noise, coloured, weight, columns)
+        left = profile.integrated_out(
+            normal, _disturbing(columns, relative, noise, coloured, profile)
+        )
         equations = left.combined(linear.design)
     posterior = regress(
         equations, linear.prior, noise.scale / per_fitted, inflation,
@@ -191,22 +191,22 @@ def solved_pass(
     )  # fmt: skip
 
 
-def _random_profile(linear: Linear, noise: NoiseModel, coloured: ColouredNoise) -> RandomProfile:
-    """What the noise adds to the profile across an edge, where unit weight has a noise of 1."""
-    width_px = linear.first_fit.blur.width_px
-    share, _ = linear.first_fit.blur.esf_and_lsf(places() * width_px)
-    reach_px = min(-float(linear.s.min()), float(linear.s.max()))
-    length_px = max(np.count_nonzero(np.abs(linear.s) < reach_px) / (2 * reach_px), 1.0)
-    return coloured.profile(noise.sides, share, width_px, length_px)
-
-
 def _disturbing(
-    columns: list[Floats], relative: Floats, noise: NoiseModel, coloured: ColouredNoise
+    columns: list[Floats],
+    relative: Floats,
+    noise: NoiseModel,
+    coloured: ColouredNoise,
+    profile: RandomProfile,
 ) -> Floats:
-    """Variance of the noise that disturbs every regressor, over that of its white part."""
+    """Variance of the noise that disturbs every regressor, over that of its white part.
+
+    Beside what the random profile follows of a regressor.
+    """
     weighted = np.concatenate(columns) / np.sqrt(relative)
+    varying = weighted - profile.followed(weighted)
+    share = np.sum(varying**2, axis=1) / np.maximum(np.sum(weighted**2, axis=1), 1e-300)
     white = float(np.mean(noise.sides * coloured.white))
-    return coloured.disturbing(weighted, noise.sides) / white
+    return np.asarray(1 + share * (coloured.disturbing(varying, noise.sides) / white - 1))
 
 
 def _equations(

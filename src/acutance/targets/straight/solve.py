@@ -174,18 +174,18 @@ def _seen_again(solved: Solution, seen: AmongSensors) -> Solution:
 
 
 def _coloured(solved: Solution, found: Correlation, pixels: Pixels) -> ColouredNoise | None:
-    """Spectra of the noise beside an edge, where it is known to correlate."""
-    first_fit = solved.linear.first_fit
-    if not (first_fit.profile.is_edge and found.by_lag):
+    """Spectra of the noise beside a target, where it is known to correlate."""
+    linear, first_fit = solved.linear, solved.linear.first_fit
+    bright = int(np.count_nonzero(linear.mean >= 0.5))
+    sides = sorted([bright, linear.mean.size - bright])
+    # A pulse may be narrow: its noise is bounded by that of the ground.
+    few = sides[0 if first_fit.profile.is_edge else 1] < MIN_SPECTRUM_PIXELS
+    if few or not found.by_lag or max(solved.side_noise) < MISFIT * first_fit.height:
         return None
     standard = _bounded(solved.standard)
-    linear = solved.linear
-    bright = int(np.count_nonzero(linear.mean >= 0.5))
-    few = min(bright, linear.mean.size - bright) < MIN_SPECTRUM_PIXELS
-    if few or max(solved.side_noise) < MISFIT * first_fit.height:
-        return None
     noise = ColouredNoise.of(standard, pixels.at, linear.mean, first_fit.line.normal)
-    scatter = noise.scatter_along(standard, linear.s, linear.t, first_fit.blur.width_px)
+    borders = first_fit.profile.distances(linear.s)
+    scatter = noise.scatter_along(standard, borders, linear.t, first_fit.blur.width_px)
     return None if solved.roughness > 0 or scatter.is_more else noise
 
 

@@ -32,6 +32,7 @@ __all__ = [
     "SIZE",
     "SplineRows",
     "combine",
+    "cubic_weights",
     "edge_and_line_weights",
     "edge_weights",
     "esf_from_lsf",
@@ -60,6 +61,19 @@ def _place(u: float) -> tuple[int, float]:
     position = min(max((u + HALF_SUPPORT) * (1 / CELL), 0.0), float(CELLS))
     cell = min(int(position), CELLS - 1)
     return cell, position - cell
+
+
+@compiled
+def cubic_weights(position: Floats) -> tuple[NDArray[np.intp], Floats]:
+    """The four cubic B-splines that are not 0 at places of any range of unit cells from 0.
+
+    As `edge_weights`: cell (n,) and weights (4, n).
+    """
+    cell, weights = np.empty(position.size, np.intp), np.empty((4, position.size))
+    for i in range(position.size):
+        cell[i] = int(position[i])
+        weights[0, i], weights[1, i], weights[2, i], weights[3, i] = _cubics(position[i] - cell[i])
+    return cell, weights
 
 
 @compiled

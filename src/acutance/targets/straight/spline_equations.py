@@ -16,7 +16,14 @@ from acutance.numerics.small_matrices import products_of_rows
 from acutance.targets.straight.spline import CELLS, edge_weights
 from acutance.targets.straight.step_profile import Profile
 
-__all__ = ["Stencil", "accumulate", "renewed", "step_stencils"]
+__all__ = [
+    "Stencil",
+    "accumulate",
+    "products_of_splines",
+    "products_with_spline",
+    "renewed",
+    "step_stencils",
+]
 
 Stencil = tuple[NDArray[np.intp], Floats]
 _SOME: Final = 64
@@ -76,9 +83,10 @@ def accumulate(
     weighted = [(cell, basis * root) for cell, basis in stencils]
     for i, (cell, basis) in enumerate(weighted):
         rows[:4] = basis
-        _add_step(gram, projection, _sums_by_cell(cell, basis, rows[: 5 + q]))
-        for other, other_basis in weighted[i + 1 :]:
-            _add_pair(gram, cell, basis, other, other_basis)
+        _add_step(gram, projection, _sums_by_cell(cell, basis, rows[: 5 + q], CELLS))
+        for other in weighted[i + 1 :]:
+            products = products_of_splines((cell, basis), other, CELLS, CELLS)
+            gram[:m, :m] += products + products.T
     gram[m:, :m] = gram[:m, m:].T
     products = products_of_rows(rows[4:])[: 1 + q, : 1 + q]
     gram[m:, m:], projection[m:] = products[1:, 1:], products[0, 1:]
@@ -104,32 +112,59 @@ def renewed(
     """
     weighted = columns[-1] * weight
     first = normal.projection.size - len(weighted)
-    rows = np.zeros((len(weighted), normal.projection.size))
-    for cell, basis in stencils:
-        sums = _sums_by_cell(cell, basis, weighted)
-        for a in range(4):
-            rows[:, a : a + CELLS] += sums[:, a].T
-    rows[:, CELLS + 3 :] = np.hstack([weighted @ some.T for some in columns])
+    beside = np.sum([products_with_spline(one, weighted) for one in stencils], axis=0)
+    rows = np.hstack([beside.T, *(weighted @ some.T for some in columns)])
     gram, projection = normal.gram.copy(), normal.projection.copy()
     gram[first:], gram[:, first:], projection[first:] = rows, rows.T, weighted @ y
     return replace(normal, gram=gram, projection=projection)
 
 
+def products_with_spline(stencil: Stencil, rows: Floats, cells: int = CELLS) -> Floats:
+    """Sums over the pixels of a spline's columns times some rows (k, n), (cells + 3, k)."""
+    sums = _sums_by_cell(*stencil, rows, cells)
+    found = np.zeros((cells + 3, len(rows)))
+    for a in range(4):
+        found[a : a + cells] += sums[:, a]
+    return found
+
+
+def products_of_splines(one: Stencil, other: Stencil, cells: int, other_cells: int) -> Floats:
+    """Sums over the pixels of the products of two splines' columns, (cells + 3, others + 3)."""
+    return _products_of_splines(*one, *other, (cells + 3, other_cells + 3))
+
+
 @compiled
-def _sums_by_cell(cell: NDArray[np.intp], basis: Floats, rows: Floats) -> Floats:
+def _products_of_splines(
+    cell: NDArray[np.intp],
+    basis: Floats,
+    other: NDArray[np.intp],
+    others: Floats,
+    shape: tuple[int, int],
+) -> Floats:
+    found = np.zeros(shape)
+    for i in range(cell.size):
+        for a in range(4):
+            for b in range(4):
+                found[cell[i] + a, other[i] + b] += basis[a, i] * others[b, i]
+    return found
+
+
+@compiled
+def _sums_by_cell(cell: NDArray[np.intp], basis: Floats, rows: Floats, cells: int) -> Floats:
     """Products of the four splines of every pixel and some rows, summed over each cell's pixels.
 
     Parameters
     ----------
     cell : (n,) int array
     basis, rows : (4, n) and (k, n) arrays
+    cells : int
 
     Returns
     -------
-    (CELLS, 4, k) array
+    (cells, 4, k) array
     """
     size = rows.shape[0]
-    sums, some = np.zeros((CELLS, 4, size)), np.empty((_SOME, size))
+    sums, some = np.zeros((cells, 4, size)), np.empty((_SOME, size))
     for first in range(0, cell.size, _SOME):
         count = min(_SOME, cell.size - first)
         # The values of one pixel side by side: the processor takes several at once.
@@ -155,16 +190,3 @@ def _add_step(gram: Floats, projection: Floats, sums: Floats) -> None:
                 gram[cell + a, cell + b] += sums[cell, a, b]
             for b in range(5, sums.shape[2]):
                 gram[cell + a, CELLS - 2 + b] += sums[cell, a, b]
-
-
-@compiled
-def _add_pair(
-    gram: Floats, cell: NDArray[np.intp], basis: Floats, other: NDArray[np.intp], others: Floats
-) -> None:
-    """Products of two steps' splines, either way."""
-    for i in range(cell.size):
-        for a in range(4):
-            for b in range(4):
-                product = basis[a, i] * others[b, i]
-                gram[cell[i] + a, other[i] + b] += product
-                gram[other[i] + b, cell[i] + a] += product
