@@ -80,6 +80,7 @@ def test_json_is_strict_and_keeps_a_list_of_numbers_on_one_line():
     assert json.loads(text) == {"a": [1.0, None], "b": {"c": [{"d": 1}]}, "e": [], "f": "±"}
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_comparison_and_target_hold_measurements(compared, target, validator):
     comparison = json.loads(json_text(document_of(compared)))
     whole = json.loads(json_text(document_of(target)))

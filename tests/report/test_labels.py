@@ -104,6 +104,7 @@ def test_nested_options_become_dotted_names():
     assert dict(flatten_options(options)) == shown
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_what_was_stated_and_another_centre_stand_in_the_header(measurement):
     assert "stated" not in describe_image(measurement)
     assert "RER centre" not in describe_image(measurement)

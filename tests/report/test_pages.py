@@ -52,6 +52,7 @@ def test_a_page_begins_with_the_verdict_and_the_main_numbers(measurement, edge_p
     assert len(first.findall(".//img")) == 2
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_page_says_where_the_pixels_come_from_and_when_they_were_measured(measurement, edge_page):
     text = words(edge_page)
     facts = text[: text.index("Result")]
@@ -79,6 +80,7 @@ def test_the_page_of_an_edge_holds_numbers_checks_and_how_to_repeat_it(measureme
     assert len(re.findall(r"<tr><td class=\"r\">\d\.\d\d</td>", html)) == 51
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_page_of_a_pulse_speaks_of_a_pulse(pulse, make_pulse):
     text = words(page(pulse))
     assert "Pulse, method spline" in text
@@ -92,6 +94,7 @@ def test_the_page_of_a_pulse_speaks_of_a_pulse(pulse, make_pulse):
     assert "--width-px 3.153 --hold-width --method" in words(page(held))
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_command_says_which_axis_is_along_track(measurement):
     turned = replace(measurement, image=replace(measurement.image, along_track="x"))
     text = words(page(turned))
@@ -126,6 +129,7 @@ def test_text_from_outside_is_escaped(measurement):
         assert words(html).count('alert("&")') >= 2
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_page_without_gsd_and_checks_leaves_their_parts_out(vague_measurement):
     text = words(page(vague_measurement))
     assert "c/m" not in text
@@ -153,6 +157,7 @@ def test_a_comparison_shows_verdicts_the_target_and_one_table(compared, truth):
     assert "--method spline --compare sdsu-2005,iso12233" in text
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_comparison_shows_only_options_that_all_share(compared):
     first, second = compared[:2]
     other = replace(second, options={**second.options, "robust": True})
@@ -176,6 +181,7 @@ def test_the_page_of_all_edges_begins_with_their_picture(target):
     assert "acutance edge scene.tif --all" in text
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_all_edges_without_a_failed_check_are_good(target):
     edges = tuple(replace(one, checks=one.checks[:3]) for one in target.measurements)
     html = page(TargetResult(edges, (), combine_edges(edges)))
@@ -217,6 +223,7 @@ def test_a_notebook_shows_numbers_checks_and_a_figure(measurement, both, details
         assert len(parsed(html).findall(".//img")) == 1
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_record_shows_the_numbers_of_its_measurement(measurement, pulse, both):
     for result in (measurement, pulse, both):
         full, light = notebook_html(result), notebook_html(result.record)
@@ -224,6 +231,7 @@ def test_a_record_shows_the_numbers_of_its_measurement(measurement, pulse, both)
         assert len(parsed(light).findall(".//img")) == 1
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_measurements_and_records_show_themselves_in_notebooks(measurement):
     for one in (measurement, measurement.record):
         assert words(one._repr_html_()) == words(notebook_html(one))

@@ -26,6 +26,7 @@ def test_a_record_cannot_be_drawn(measurement):
         draw(measurement.record)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_printed_record_is_reported_without_the_numbers_that_it_lacks():
     """The QuickBird tables print no RER and no curve, and none of their numbers has a deviation."""
     record = published_entries("quickbird-2003")[0].record
@@ -43,6 +44,7 @@ def test_a_printed_record_is_reported_without_the_numbers_that_it_lacks():
         combine([record, record])
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_number_that_one_direction_lacks_is_undefined_there(measurement):
     document = measurement.record.to_dict()
     numbers = {name: document[name] for name in ("mtf_nyquist", "rer", "mtf")}

@@ -11,6 +11,8 @@ import acutance as ac
 from acutance.raster import Gsd, Region, open_image
 from acutance.report import page
 
+pytestmark = pytest.mark.usefixtures("undrawn")
+
 TRIANGLE = Region(np.array([[4.0, 4.0], [4.0, 44.0], [54.0, 44.0], [54.0, 12.0]]))
 
 

@@ -114,6 +114,7 @@ def test_directions_change_places_when_along_track_is_the_x_axis(both):
     assert "across [c/px]" not in labels
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_direction_that_was_not_measured_is_in_no_headline(both):
     one = of_class(OneMeasured, both)
     assert [row[0] for row in headline_table(numbers_of(one), one).rows] == ["across"]
@@ -127,6 +128,7 @@ def test_a_direction_that_was_not_measured_is_in_no_headline(both):
     assert json.loads(json_text(document(one)))["measured_directions"] == ["across"]
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_ratio_of_two_sensors_is_called_one_everywhere(both):
     ratio = of_class(Ratio, both, kind="biresolution-like", method="kernel-fit")
     shown, whole = text(ratio), page(ratio)
@@ -144,6 +146,7 @@ def test_a_ratio_of_two_sensors_is_called_one_everywhere(both):
     assert csv(both).startswith("direction,freq_cpp,mtf,std,")
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_methods_are_compared_in_both_directions_in_one_table(both):
     other = replace(both, method="gaussian-2003", snr=70.0)
     comparison = compare([both, other], truth={"across": both.across, "along": both.along})
