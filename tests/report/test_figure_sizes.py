@@ -16,7 +16,7 @@ def drawn(measurement, title):
     (panel,) = (one for one in panels(measurement) if one.title == title)
     figure = panel_figure(panel)
     with styled():
-        figure.canvas.draw()
+        figure.draw_without_rendering()
     return figure
 
 
@@ -36,7 +36,7 @@ def pair():
 
 def test_a_long_list_of_checks_stands_below_in_columns(edge):
     figure = draw(edge)
-    figure.canvas.draw()
+    figure.draw_without_rendering()
     shown = {text.get_text(): text for axes in figure.axes for text in axes.texts}
     places = [shown[check.name].get_window_extent() for check in edge.checks]
     assert len(edge.checks) > 30
@@ -62,6 +62,7 @@ def test_zeros_of_a_pulse_can_be_read(pulse):
     assert all(text.get_fontsize() >= 9 for text in names)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_mtf_of_a_pulse_is_not_squeezed_by_its_table(pulse, measurement):
     first, second = page(pulse).split("<section>")[1:3]
     assert "<img" not in first
@@ -95,6 +96,7 @@ def test_radii_stand_above_the_dots_of_a_scene():
     assert all(one.get_zorder() < above for one in (*axes.collections, *axes.lines))
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_narrow_pages_say_where_they_are_scrolled(measurement):
     shown = page(measurement)
     assert "scroll sideways" in shown

@@ -34,7 +34,8 @@ def panel_figures(measurement):
 @cache
 def written(figure):
     """Every text that is drawn, with its box in pixels."""
-    figure.canvas.draw()
+    # Places of words are asked, not pixels.
+    figure.draw_without_rendering()
     renderer = figure.canvas.get_renderer()
     hidden = {text for axis in figure.findobj(Axis) for text in _labels_out_of_view(axis)}
     return [
@@ -146,7 +147,7 @@ def test_no_curve_passes_the_names_of_the_zeros():
     image, _ = simulate.pulse(sensor, snr=70.0, rng=np.random.default_rng(1))
     both = [measure_pulse(image, width_px=3.0, method=name) for name in ("spline", "sdsu-2005")]
     figure = draw(both)
-    figure.canvas.draw()
+    figure.draw_without_rendering()
     axes, renderer = figure.axes[0], figure.canvas.get_renderer()
     named = [one for one in axes.texts if one.get_text().endswith("/w")]
     assert [one.get_text() for one in named] == ["1/w", "2/w"]

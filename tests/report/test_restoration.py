@@ -59,7 +59,7 @@ def test_of_a_large_kernel_the_middle_is_shown(large):
 def test_nothing_lies_over_curves_or_other_numbers(large):
     """The legend of the noise, and the weights in the drawing of the kernel."""
     figure = restoration_figure(large)
-    figure.canvas.draw()
+    figure.draw_without_rendering()
     (noise,) = [one for one in figure.axes if one.get_title(loc="left") == "Noise spectrum"]
     box = noise.get_legend().get_window_extent()
     for line in noise.get_lines():
@@ -72,6 +72,7 @@ def test_nothing_lies_over_curves_or_other_numbers(large):
         assert not one.count_overlaps(boxes[:i])
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_head_names_the_sources_and_numbers_without_deviations_have_none(sharpening, large):
     html = restoration_page(sharpening)
     head = html[: html.index("</header>")]
@@ -146,6 +147,7 @@ def test_a_stated_gsd_is_told_beside_the_measured_one():
     assert "stated;" not in niirs_text(ac.niirs(edge, gsd_m=1.0))
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_kernel_that_blurs_is_told_in_text_and_page():
     sensor = ac.Sensor([ac.optics.Gaussian(0.5), ac.optics.Detector()])
     filter = ac.design_restoration(sensor, noise_gain=0.2, snr=80, size=7)
@@ -178,6 +180,7 @@ def test_a_proof_has_what_the_filter_was_designed_for():
     assert f"{np.exp(-2 * (np.pi * 0.5 * 0.5) ** 2) * np.sinc(0.5):.3f}" in shown
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_what_is_called_an_overshoot_is_one(sharpening):
     """The largest of both may be an undershoot, of which the table has another number."""
     page = restoration_page(sharpening)

@@ -45,7 +45,7 @@ def panel_axes(measurement, title, **drawn_on):
     with styled():
         figure = new_page(6.0, panel.height_in)
         panel.draw(figure)
-        figure.canvas.draw()
+        figure.draw_without_rendering()
     return figure.axes, panel
 
 
@@ -265,6 +265,7 @@ def test_in_a_terminal_reasons_are_fewer_and_none_is_no_table():
     assert reasons_text(SceneEdges.of_rows([])) == ""
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_page_of_a_scene_says_what_its_numbers_are(measured):
     whole = html.unescape(page(measured))
     for words in ("median SNR", f"of {measured.edges.size} edges used", "pale as sharp", *PANELS):
@@ -299,6 +300,7 @@ def test_the_forms_of_the_sensor_say_whether_the_product_was_interpolated(measur
     assert "interpolated by splines: the product" in text(of_splines)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_of_too_few_edges_nothing_is_shown_over_the_field(constant):
     assert not constant.field.is_fitted
     assert tuple(one.title for one in panels(constant)[-3:]) == PANELS[:3]

@@ -68,7 +68,7 @@ def test_the_noise_figure_marks_the_minimum_snr(results):
 @pytest.mark.parametrize("name", ["snr", "ground-noise"])
 def test_no_curve_passes_an_answer(results, name):
     figure = study_figure(results[name])
-    figure.canvas.draw()
+    figure.draw_without_rendering()
     renderer = figure.canvas.get_renderer()
     for axes in figure.axes:
         boxes = [one.get_window_extent(renderer) for one in axes.texts if "below" in one.get_text()]
