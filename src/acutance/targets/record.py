@@ -357,6 +357,9 @@ def strict_json(value: Any) -> Any:
     if isinstance(value, Mapping):
         return {str(key): strict_json(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
+        # A covariance is a million numbers: no call for each.
+        if set(map(type, value)) == {float}:
+            return [item if math.isfinite(item) else None for item in value]
         return [strict_json(item) for item in value]
     if isinstance(value, float) and not math.isfinite(value):
         return None
