@@ -8,6 +8,7 @@ import numpy as np
 
 import acutance as ac
 from acutance import simulate
+from acutance.archive.trends import Series, fit_trend
 from acutance.targets.straight import METHODS, PULSE_METHODS
 
 
@@ -29,6 +30,16 @@ def main() -> None:
     ac.measure_points(points, positions=truth.positions)
     ac.measure_points(points)
     ac.measure_bars(simulate.bars(sensor, snr=100, rng=rng)[0])
+    fit_trend(steady_series(rng))
+
+
+def steady_series(rng: np.random.Generator) -> Series:
+    """Twelve images of a year: from eight on steps are sought."""
+    when = 2024 + np.arange(12) / 12
+    value = 0.3 + 0.003 * rng.standard_normal(12)
+    return Series(
+        metric="mtf_nyquist", when=when, value=value, std=np.full(12, 0.002), image=np.arange(12)
+    )
 
 
 if __name__ == "__main__":
