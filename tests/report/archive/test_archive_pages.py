@@ -103,6 +103,8 @@ def test_the_page_of_a_trend_begins_with_what_has_changed():
     assert '<div class="verdict good">' in still
 
 
+@pytest.mark.usefixtures("undrawn")
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize(("count", "sought"), [(5, "drift"), (12, "change")])
 def test_no_change_is_no_good_news_where_little_could_be_found(count, sought):
     series = series_of(count=count, rate=0.0, step=0.0)
@@ -130,6 +132,7 @@ def test_steps_that_are_not_sought_have_no_probability_in_the_state(edge_record,
     assert "none found" not in page
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_level_without_its_season_says_so():
     series = series_of(rate=0.0, step=0.0)
     seasonal = replace(series, value=series.value + 0.02 * np.cos(2 * np.pi * series.when))
@@ -158,6 +161,7 @@ def test_steps_events_and_limits_are_drawn_where_they_are():
     assert 0.25 in levels
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_page_of_a_sensor_has_its_state_changes_and_images(archive):
     page = words_of(sensor_page(archive, "QB02"))
     trend = archive.trend("mtf_nyquist", sensor="QB02", verdict="usable")
@@ -171,6 +175,7 @@ def test_the_page_of_a_sensor_has_its_state_changes_and_images(archive):
     assert "By target, across" in page
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_every_number_of_the_state_has_its_own_drift(archive):
     """Drift and changes of a width stood beside the MTF alone."""
     rows = archive.measurements(sensor="QB02", verdict="usable")
@@ -191,6 +196,7 @@ def test_every_number_of_the_state_has_its_own_drift(archive):
     assert "below it the drift of that number" in page
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_across_and_along_are_compared_at_the_top(tmp_path, edge_record):
     rng = np.random.default_rng(2)
     with Archive(tmp_path / "both.db") as made:
@@ -234,6 +240,7 @@ def test_sentences_and_tables_have_one_sign(tmp_path, edge_record):
     assert f"across minus along, 95 %: {low} to {high} %" in page
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_requirements_come_first(archive, tmp_path):
     spec = tmp_path / "spec.toml"
     spec.write_text(SPEC, encoding="utf-8")
@@ -271,6 +278,7 @@ def test_the_table_of_a_specification_has_the_words_of_its_sentences(archive):
     assert [row[2] for row in table.rows] == ["mtf_nyquist >= 0.9", "mtf_nyquist <= 0.9"]
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_curves_of_bands_are_drawn_apart(tmp_path, edge_record):
     with Archive(tmp_path / "bands.db") as made:
         for at, band in enumerate(("red", "blue", "red")):
@@ -282,6 +290,7 @@ def test_curves_of_bands_are_drawn_apart(tmp_path, edge_record):
     assert "blue: the latest 1 measurement across." in page
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_undated_images_of_bands_that_are_not_named(tmp_path, edge_record):
     """One row an image, and bands of different GSDs apart, everywhere on the page."""
     document = edge_record.document
@@ -303,6 +312,7 @@ def test_undated_images_of_bands_that_are_not_named(tmp_path, edge_record):
     assert "of one image, which shows no trend" in page
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_sensor_without_a_name_has_a_title_and_the_note_of_the_check(tmp_path, edge_record):
     with Archive(tmp_path / "unnamed.db") as made:
         for at in range(6):
@@ -324,6 +334,7 @@ def test_a_sensor_without_a_name_has_a_title_and_the_note_of_the_check(tmp_path,
     assert "images without a sensor, " not in page
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_bands_are_in_the_order_of_their_numbers(tmp_path, edge_record):
     with Archive(tmp_path / "bands.db") as made:
         for band in ("B11", "B8A", "B2"):
@@ -348,6 +359,7 @@ def test_numbers_of_a_table_have_the_digits_of_their_deviations(archive):
     assert all(len(value) == len(std) for value, std in shown)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_an_image_dated_to_the_day_has_no_time(tmp_path, edge_record):
     with Archive(tmp_path / "days.db") as days:
         for number, day in enumerate(("2026-01-05", "2026-01-06T10:20Z", None)):
