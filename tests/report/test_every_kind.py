@@ -123,6 +123,11 @@ def test_text_and_page_show_the_tables_of_the_kind(result):
     assert " less " not in re.sub(r"data:image[^\"]*", "", whole)
 
 
+def test_the_page_of_a_pair_is_written_with_its_drawings():
+    """Those of the other kinds are written by the demonstration."""
+    assert page(pair()).count("data:image/svg+xml;base64,PD94") == len(panels(pair()))
+
+
 def test_the_document_keeps_to_the_schema(result, schema_validator):
     content = json.loads(json_text(document(result, covariance=True)))
     schema_validator.validate(content)
