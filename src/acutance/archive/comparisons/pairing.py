@@ -76,17 +76,17 @@ def find_pairs(first: MeasuredGroup, second: MeasuredGroup, by: str) -> Pairs | 
     alone = np.union1d(first.image, second.image).size - shared
     if shared == 0:
         return None
-    found = [
-        pairs
-        for basis, one_procedure in _bases(by)
-        if (pairs := _pairs(basis, first, second, by, one_procedure=one_procedure)) is not None
-    ]  # fmt: skip
-    for pairs in found:
+    finest = None
+    for basis, one_procedure in _bases(by):
+        pairs = _pairs(basis, first, second, by, one_procedure=one_procedure)
+        if pairs is None:
+            continue
         images = np.unique(pairs.image).size
         if images >= MIN_IMAGES and 2 * images >= shared:
             return pairs
+        finest = finest or pairs
     # One image with many pairs says something, two among forty others do not.
-    return found[0] if found and alone == 0 else None
+    return finest if alone == 0 else None
 
 
 def _bases(by: str) -> list[tuple[Basis, bool]]:
