@@ -82,8 +82,12 @@ def stated(image):
     return ac.scan_scene(image, gsd_m=2.0, options=options)
 
 
-def test_the_sensor_is_the_one_behind_the_objects(image, stated):
-    plain = ac.scan_scene(image, gsd_m=2.0)
+@pytest.fixture(scope="module")
+def plain(image):
+    return ac.scan_scene(image, gsd_m=2.0)
+
+
+def test_the_sensor_is_the_one_behind_the_objects(plain, stated):
     expected = float(np.abs(SENSOR.otf(np.array([0.5]), np.array([0.0])))[0])
     for name in ("across", "along"):
         before, after = getattr(plain, name).mtf_nyquist, getattr(stated, name).mtf_nyquist
@@ -164,8 +168,7 @@ def test_statements_that_mean_nothing(given):
         ac.ScanOptions(**given)
 
 
-def test_edges_are_drawn_beside_what_they_show(image, stated):
-    plain = ac.scan_scene(image, gsd_m=2.0)
+def test_edges_are_drawn_beside_what_they_show(plain, stated):
     one, other = edges_seen(plain), edges_seen(stated)
     np.testing.assert_allclose(one.sensor, other.sensor, atol=1e-9)
     at = (np.array([300.0]), np.array([300.0]), np.array([0.0]))
