@@ -226,16 +226,17 @@ def _profile_fit(blob: _Blob, normal_deg: float, count: int | None) -> tuple[flo
     number = np.bincount(bins - start)
     kept = number > 0
     places = np.asarray(0.25 * (np.flatnonzero(kept) + start), float)
-    profile = np.asarray(total[kept] / number[kept], float)
+    value_there = np.asarray(total[kept] / number[kept], float)
     offset, width = _span(across[central], value[central])
-    if not width > 3 or np.ptp(profile) == 0:
+    if not width > 3 or np.ptp(value_there) == 0:
         return None
-    alone, level = min(_rest(places, profile, offset, 2 * width, 1, blur) for blur in _BLURS_PX)
+    profile = _Profile.of(places, value_there)
+    alone, level = min(profile.rest(offset, 2 * width, 1, blur) for blur in _BLURS_PX)
     counts: Sequence[int] = _COUNTS if count is None else (count,)
     coarse = [
         min(
             (
-                _rest(places, profile, offset + move, period, bars, _BLUR_PX)[0]
+                profile.rest(offset + move, period, bars, _BLUR_PX)[0]
                 for period, move in _trials(width, bars, 9, 5)
             ),
             default=math.inf,
@@ -246,7 +247,7 @@ def _profile_fit(blob: _Blob, normal_deg: float, count: int | None) -> tuple[flo
     for index in np.argsort(coarse)[:_CLOSER].tolist():
         for period, move in _trials(width, counts[index], 17, 9):
             for blur in _BLURS_PX:
-                rest, _ = _rest(places, profile, offset + move, period, counts[index], blur)
+                rest, _ = profile.rest(offset + move, period, counts[index], blur)
                 if rest < best[0]:
                     best = (rest, offset + move, period, counts[index])
     rest, place, period, bars = best
@@ -296,19 +297,38 @@ def _crossing(mean: Floats, inside: int, step: int, level: float) -> float:
     return inside + step * (float(mean[inside]) - level) / drop if drop > 0 else float(inside)
 
 
-def _rest(
-    places: Floats, profile: Floats, offset: float, period: float, count: int, blur: float
-) -> tuple[float, float]:
-    """Share of a profile's variance that a blurred group leaves, and its height in the profile."""
-    model = _blurred_bars(places, offset, period, count, math.sqrt(0.5) / math.hypot(blur, 0.29))
-    model = model - np.mean(model)
-    own = profile - np.mean(profile)
-    power = float(own @ own)
-    shared = float(model @ own)
-    size = float(model @ model)
-    if not (power > 0 and size > 0 and shared > 0):
-        return 1.0, 0.0
-    return 1 - shared**2 / (size * power), shared / size
+@dataclass(frozen=True, eq=False)
+class _Profile:
+    """A profile along a normal, to which thousands of groups are compared.
+
+    Parameters
+    ----------
+    places : (n,) array
+    own : (n,) array
+        Its values, without their mean.
+    power : float
+        Sum of the squares of these.
+    """
+
+    places: Floats
+    own: Floats
+    power: float
+
+    @classmethod
+    def of(cls, places: Floats, value: Floats) -> _Profile:
+        own = value - np.mean(value)
+        return cls(places, own, float(own @ own))
+
+    def rest(self, offset: float, period: float, count: int, blur: float) -> tuple[float, float]:
+        """Share of its variance that a blurred group leaves, and the group's height in it."""
+        scale = math.sqrt(0.5) / math.hypot(blur, 0.29)
+        model = _blurred_bars(self.places, offset, period, count, scale)
+        model -= model.sum() / model.size
+        shared = float(model @ self.own)
+        size = float(model @ model)
+        if not (self.power > 0 and size > 0 and shared > 0):
+            return 1.0, 0.0
+        return 1 - shared**2 / (size * self.power), shared / size
 
 
 @compiled
