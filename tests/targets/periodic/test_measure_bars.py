@@ -179,11 +179,12 @@ def test_priors_are_as_wide_as_those_of_the_benchmark():
     assert curve == pytest.approx(0.0022, rel=0.08)
 
 
-@pytest.mark.parametrize(("count", "stated"), [(5, 3), (5, 6), (3, 5)])
-def test_a_wrong_number_of_bars_is_refused(count, stated):
+@pytest.mark.parametrize(("count", "wrong"), [(5, (3, 6)), (3, (5,))])
+def test_a_wrong_number_of_bars_is_refused(count, wrong):
     image, _ = bars_scene("smeared", 1, count=count, periods_px=(14, 9, 5, 3), angle_deg=5.0)
-    with pytest.raises(ac.NoBarsError, match=f"group of {count}, and {stated} were asked for"):
-        ac.measure_bars(image, options=BarsOptions(count=stated))
+    for stated in wrong:
+        with pytest.raises(ac.NoBarsError, match=f"group of {count}, and {stated} were asked for"):
+            ac.measure_bars(image, options=BarsOptions(count=stated))
     right = ac.measure_bars(image, options=BarsOptions(count=count))
     assert [one.bars.count for one in right.groups] == [count] * 4
 
