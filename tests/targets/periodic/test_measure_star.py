@@ -146,9 +146,9 @@ def test_levels_of_another_image_are_invalid(dark, bright):
     assert "the stated levels" in found.verdict.sentence
 
 
-@pytest.mark.parametrize("name", list(reference_systems()))
-def test_true_levels_are_those_of_the_image(name):
-    found, _ = measured_star(name)
+@pytest.mark.parametrize(("number", "name"), list(enumerate(reference_systems())))
+def test_true_levels_are_those_of_the_image(number, name):
+    found, _ = measured_star(name, 20 + number)
     (check,) = (one for one in found.checks if one.name == "stated_levels")
     assert check.passed
     assert check.value < 0.01
