@@ -36,7 +36,9 @@ def points(method: str) -> ac.Measurement:
 
 
 def biresolution(method: str) -> ac.Measurement:
-    low, high, _ = ac.simulate.pair(SENSOR, SENSOR, ratio=3, snr=80, rng=np.random.default_rng(4))
+    low, high, _ = ac.simulate.pair(
+        SENSOR, SENSOR, ratio=3, shape=(80, 80), snr=80, rng=np.random.default_rng(4)
+    )
     return ac.measure_biresolution(low, high, ratio=3, method=method)
 
 
