@@ -73,14 +73,15 @@ def test_one_band_is_a_scene(bands, few_forms):
     assert several.shifts == {}
 
 
-def test_all_bands_have_the_same_edges(bands, found):
+def test_all_bands_have_the_same_edges(bands, found, few_forms):
     first, other = (scene.edges for scene in found.measurements)
     assert first.size == other.size
     both = first.used & other.used
     assert both.sum() > 0.9 * first.used.sum()
     away = np.hypot(first.row - other.row, first.col - other.col)[both]
     assert np.median(away) < 0.5
-    alone = ac.scan_scene(bands[0])
+    with few_forms():
+        alone = ac.scan_scene(bands[0])
     assert both.sum() > 0.9 * alone.edges.used.sum()
     expected = float(np.abs(SENSOR.otf(np.array([0.5]), np.array([0.0])))[0])
     for scene in found.measurements:
