@@ -26,7 +26,7 @@ class Oblique:
 )
 def test_a_sensor_is_the_same_along_both_diagonals(blur, word):
     sensor = optics.Sensor([blur, optics.Detector()])
-    scene, check = check_of_bare_ground("diagonals", sensor, 700, 90, seed=5)
+    scene, check = check_of_bare_ground("diagonals", sensor, 560, 90, seed=5)
     assert check.passed == (word != "doubtful")
     assert scene.verdict.word == word
     if word == "doubtful":
