@@ -77,8 +77,11 @@ class NoiseSpectrum:
 
         Pixels are a lattice: beyond their Nyquist frequency the power comes again.
         """
-        along_px = normal[0] * _RIGHT + normal[1] * _DOWN
-        power = np.cos(2 * np.pi * freq_cpp[:, None] * along_px) @ self.covariance
+        # Covariances are the same either way.
+        middle = self.covariance.size // 2
+        along_px = (normal[0] * _RIGHT + normal[1] * _DOWN)[:middle]
+        waves = np.cos(2 * np.pi * freq_cpp[:, None] * along_px)
+        power = self.covariance[middle] + 2 * waves @ self.covariance[:middle]
         return np.asarray(np.maximum(power, self.least))
 
     def plane(self, shape: tuple[int, int]) -> Floats:
