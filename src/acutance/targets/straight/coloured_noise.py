@@ -83,8 +83,8 @@ class ColouredNoise:
     ) -> ColouredNoise:
         """From residuals about an edge or a pulse.
 
-        Of a side with too few pixels for a spectrum the noise is as much at every frequency as
-        white noise has there, or as the other side's.
+        Of a side with too few pixels for a spectrum, which only one may be, the noise is as much at
+        every frequency as white noise has there, or as the other side's.
 
         Parameters
         ----------
@@ -97,13 +97,15 @@ class ColouredNoise:
         normal : (float, float)
             Unit vector (x, y) across it.
         """
-        sides = [response < 0.5, response >= 0.5]
-        dark, bright = (NoiseSpectrum.of(standard[one], at[0][one], at[1][one]) for one in sides)
-        few = [np.count_nonzero(one) < MIN_SPECTRUM_PIXELS for one in sides]
-        dark, bright = (
-            replace(bright, least=1.0) if few[0] else dark,
-            replace(dark, least=1.0) if few[1] else bright,
-        )
+        sides = (response < 0.5, response >= 0.5)
+        many = [np.count_nonzero(one) >= MIN_SPECTRUM_PIXELS for one in sides]
+        told = [
+            NoiseSpectrum.of(standard[side], at[0][side], at[1][side])
+            for side, is_told in zip(sides, many, strict=True)
+            if is_told
+        ]
+        bound = replace(told[0], least=1.0)
+        dark, bright = told[0] if many[0] else bound, told[-1] if many[1] else bound
         along = np.stack([one.along(normal, _FREQ_CPP) for one in (dark, bright)])
         return cls((dark, bright), along, at)
 
