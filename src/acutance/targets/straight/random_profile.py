@@ -63,17 +63,13 @@ class RandomProfile:
         disturbing : (q,) array
             Variance of the noise that disturbs those, where that of unit weight is 1.
         """
-        explained = self._gain @ self.beside
-        gram = normal.gram - self.beside.T @ explained
-        projection = normal.projection - explained.T @ self.projection
+        left = _without(normal, self._gain, self.beside, self.projection)
         # What varies along the target: as much of each regressor is noise, at random.
-        own = np.maximum(normal.gram.diagonal()[-disturbing.size :], 1e-300)
-        random = np.maximum(disturbing - 1, 0.0) / own
-        rows = gram[-disturbing.size :]
-        explained = _gain(rows[:, -disturbing.size :], np.diag(random)) @ rows
-        gram = gram - rows.T @ explained
-        projection = projection - explained.T @ projection[-disturbing.size :]
-        return replace(normal, gram=gram, projection=projection)
+        last = slice(-disturbing.size, None)
+        own = np.maximum(normal.gram.diagonal()[last], 1e-300)
+        random = np.diag(np.maximum(disturbing - 1, 0.0) / own)
+        rows = left.gram[last]
+        return _without(left, _gain(rows[:, last], random), rows, left.projection[last])
 
     def followed(self, rows: Floats) -> Floats:
         """Mean of some rows (k, n) along the target, cell by cell of the spline, at the pixels."""
@@ -117,8 +113,8 @@ def random_profile(
     position = (s - first_px) / cell_px
     cells, stencil = int(position.max()) + 1, cubic_weights(position)
     weighted = (stencil[0], stencil[1] * weight)
-    own = products_of_splines(weighted, stencil, cells, cells)
-    esf = [products_of_splines(weighted, one, cells, CELLS) for one in linear.stencils]
+    own = products_of_splines(*weighted, *stencil, (cells, cells))
+    esf = [products_of_splines(*weighted, *one, (cells, CELLS)) for one in linear.stencils]
     rows = np.concatenate([linear.first_residual[None], *columns])
     others = products_with_spline(weighted, rows, cells)
     reach_px = min(-first_px, float(s.max()))
@@ -128,6 +124,16 @@ def random_profile(
         stencil, own, np.hstack([np.sum(esf, axis=0), others[:, 1:]]), others[:, 0],
         coloured.profile_covariance(noise.sides, share, cell_px, length_px),
     )  # fmt: skip
+
+
+def _without(normal: Normal, gain: Floats, beside: Floats, projection: Floats) -> Normal:
+    """Equations without what random coefficients explain: `gain` is their covariance as left."""
+    explained = gain @ beside
+    return replace(
+        normal,
+        gram=normal.gram - beside.T @ explained,
+        projection=normal.projection - explained.T @ projection,
+    )
 
 
 def _gain(seen: Floats, covariance: Floats) -> Floats:

@@ -85,7 +85,7 @@ def accumulate(
         rows[:4] = basis
         _add_step(gram, projection, _sums_by_cell(cell, basis, rows[: 5 + q], CELLS))
         for other in weighted[i + 1 :]:
-            products = products_of_splines((cell, basis), other, CELLS, CELLS)
+            products = products_of_splines(cell, basis, *other, (CELLS, CELLS))
             gram[:m, :m] += products + products.T
     gram[m:, :m] = gram[:m, m:].T
     products = products_of_rows(rows[4:])[: 1 + q, : 1 + q]
@@ -128,20 +128,16 @@ def products_with_spline(stencil: Stencil, rows: Floats, cells: int = CELLS) -> 
     return found
 
 
-def products_of_splines(one: Stencil, other: Stencil, cells: int, other_cells: int) -> Floats:
-    """Sums over the pixels of the products of two splines' columns, (cells + 3, others + 3)."""
-    return _products_of_splines(*one, *other, (cells + 3, other_cells + 3))
-
-
 @compiled
-def _products_of_splines(
+def products_of_splines(
     cell: NDArray[np.intp],
     basis: Floats,
     other: NDArray[np.intp],
     others: Floats,
-    shape: tuple[int, int],
+    cells: tuple[int, int],
 ) -> Floats:
-    found = np.zeros(shape)
+    """Sums over the pixels of the products of two splines' columns, (cells + 3, cells + 3)."""
+    found = np.zeros((cells[0] + 3, cells[1] + 3))
     for i in range(cell.size):
         for a in range(4):
             for b in range(4):
