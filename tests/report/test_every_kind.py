@@ -8,8 +8,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from matplotlib.text import Text
-from test_figures import outside, overlaps
+from test_figures import outside, overlaps, texts
 
 import acutance as ac
 from acutance.report import (
@@ -143,7 +142,7 @@ def test_all_outputs_are_made_without_details(result):
     more = {"star": ["mean"], "bars": ["normal"]}.get(result.kind, [])
     named = [line.split(",")[0] for line in csv(light).splitlines()[1:]]
     assert list(dict.fromkeys(named)) == [*result.measured_directions, *more]
-    assert any("MTF" in one.get_text() for one in draw(light).findobj(Text))
+    assert "MTF" in texts(draw(light))
     for output in (page(light), notebook_html(light), notebook_html(light.record)):
         assert "data:image/svg+xml" in output
 
