@@ -245,9 +245,10 @@ def _about(scene: Scene) -> tuple[str, ...]:
         "Because the image is simulated, the true curves are known (truth.json). Grass is no "
         "uniform background: what surrounds a target is structure and not noise, so mirrors, star "
         "and bars have wider intervals here than on a laboratory's target, and their checks say "
-        "that the noise is correlated. Intervals count the power of grass at its coarsest for all "
-        "frequencies, and those of a star without stated levels allow for scattered light, of "
-        "which this sensor has none: the targets agree better than their deviations promise.",
+        "that the noise is correlated. Their intervals count the power of grass at its coarsest "
+        "for all frequencies, and those of a star without stated levels allow for scattered "
+        "light, of which this sensor has none: the targets agree better than their deviations "
+        "promise.",
     )
 
 
