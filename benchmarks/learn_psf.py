@@ -3,7 +3,8 @@
 Example: python benchmarks/learn_psf.py --sensors 250 --out psf_families.npz
 Then: python benchmarks/learn_psf.py --seed 7 --density psf_sensors.npz
 Both files lie in targets/points: psf_families.py reads the first, sensor_density.py the second,
-which builds on the first.
+which builds on the first. More sensors of a family, or of a new one, come into a density there is:
+python benchmarks/learn_psf.py --seed 21 --density psf_sensors.npz --more scatter 600
 """
 
 from __future__ import annotations
@@ -11,11 +12,14 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+import numpy as np
+
 from acutance.targets.points.learn_psf import learn, write
 from acutance.targets.points.learn_sensors import (
     DENSITY_COUNTS,
     density,
     draw_departures,
+    with_more,
     write_density,
 )
 
@@ -26,6 +30,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=Path, help="file of principal directions")
     parser.add_argument("--density", type=Path, help="file of the density of sensors")
+    parser.add_argument("--more", nargs=2, metavar=("FAMILY", "COUNT"), help="into --density")
     arguments = parser.parse_args()
     if arguments.out is None and arguments.density is None:
         parser.error("give --out, --density or both: the files to write")
@@ -35,9 +40,18 @@ def main() -> None:
         for name, rows in directions.items():
             print(f"{name}: {rows.shape[0]} directions")
     if arguments.density is not None:
-        found = density(draw_departures(DENSITY_COUNTS, arguments.seed))
+        more = arguments.more is not None
+        counts = {arguments.more[0]: int(arguments.more[1])} if more else DENSITY_COUNTS
+        drawn = draw_departures(counts, arguments.seed)
+        found = with_more(_kept(arguments.density), drawn) if more else density(drawn)
         write_density(arguments.density, found)
-        print(f"{sum(DENSITY_COUNTS.values())} sensors")
+        print(f"{sum(counts.values())} sensors")
+
+
+def _kept(path: Path) -> dict[str, np.ndarray]:
+    """The arrays of a file of the density."""
+    with np.load(path, allow_pickle=False) as file:
+        return {name: file[name].astype(float) for name in file.files}
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ from acutance.targets.points.learn_sensors import (
     Departures,
     density,
     draw_departures,
+    with_more,
     write_density,
 )
 from acutance.targets.points.psf_families import learned_families
@@ -33,7 +34,7 @@ def light(sensor, coordinates=None):
     return np.concatenate([g.step * c.ravel() for g, c in zip(GRIDS, parts, strict=True)])
 
 
-@pytest.mark.parametrize("family", FAMILY_LOG_AMPLITUDES)
+@pytest.mark.parametrize("family", [*FAMILY_LOG_AMPLITUDES, "scatter"])
 def test_sensors_never_seen_lie_in_the_coordinates(family):
     """What the coordinates leave of a new sensor's departure is a tenth of it, in the median."""
     unit = np.eye(drawn_sensors().directions.shape[1])
@@ -78,6 +79,24 @@ def test_a_trail_is_there_in_four_directions_and_round_sensors_once():
     assert wide.max() > 0.2
 
 
+def test_more_sensors_have_the_coordinates_of_the_first_ones():
+    def departures(*sensors):
+        return Departures.of(departure(one) for one in sensors)
+
+    smear, other = (
+        Sensor([Gaussian(0.4), Smear(length, "across"), PIXEL]) for length in (1.2, 0.8)
+    )
+    trail = Sensor([Gaussian(0.4), Exponential(0.4, "across"), PIXEL])
+    kept = density({"smear": departures(smear)})
+    found = with_more(kept, {"smear": departures(other), "trail": departures(trail)})
+    at_once = density({"smear": departures(smear, other), "trail": departures(trail)})
+    assert found.keys() == at_once.keys()
+    for name, rows in at_once.items():
+        np.testing.assert_allclose(found[name], rows, atol=1e-6)
+    assert [len(found[name]) for name in ("smear", "trail")] == [2, 1]
+    assert len(kept["smear"]) == 1
+
+
 def test_the_file_holds_all_sensors():
     kernels = drawn_sensors().kernels
     whole = {name: np.exp(kernels.log_weight[kernels.name[kernels.part] == name]).sum()
@@ -92,5 +111,5 @@ def test_sensors_of_another_blur_have_no_part():
     assert 100 < wide.part.size < narrow.part.size
     assert sensors.about((20.0, 20.0)).part.size == 0
     trailing = sensors.about((2.4, 1.3))
-    assert set(trailing.name[trailing.part]) <= {*FAMILY_LOG_AMPLITUDES, "plain"}
+    assert set(trailing.name[trailing.part]) <= {*FAMILY_LOG_AMPLITUDES, "plain", "scatter"}
     assert trailing.part.size < narrow.part.size

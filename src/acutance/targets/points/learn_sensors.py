@@ -20,7 +20,14 @@ from acutance.targets.points.psf_families import Parities, learned_families
 from acutance.targets.points.psf_spline import GRIDS, parity_part
 from acutance.targets.points.sensor_density import Basis
 
-__all__ = ["DENSITY_COUNTS", "Departures", "density", "draw_departures", "write_density"]
+__all__ = [
+    "DENSITY_COUNTS",
+    "Departures",
+    "density",
+    "draw_departures",
+    "with_more",
+    "write_density",
+]
 
 DENSITY_COUNTS: Final = {
     "telescope": 1400,
@@ -33,6 +40,7 @@ DENSITY_COUNTS: Final = {
     "plain": 300,
     "shifted": 800,
     "processed": 800,
+    "scatter": 600,
 }
 """Sensors of the density: more of families that vary in more ways. "plain" is a Gaussian blur and a
 detector, nothing else."""
@@ -121,12 +129,8 @@ def density(drawn: Mapping[str, Departures]) -> dict[str, Floats]:
         "basis same", "basis opposite", "basis odd": as `sensor_density.Basis`; by family
         (n, a + b + 2 c + 2): coordinates, and the logarithms of the widths across and along.
     """
-    even, odd, _ = (
-        np.column_stack([*(q.reshape(len(q), -1) for q in group.quadrants), group.tail]) * _metric()
-        for group in learned_families().groups
-    )
-    parts = _by_symmetry(even, odd)
-    axes = Basis(*(_axes(one) for one in parts))
+    even, odd = _directions()
+    axes = Basis(*(_axes(one) for one in _by_symmetry(even, odd)))
     found: dict[str, Floats] = {
         f"basis {name}": np.asarray(np.linalg.lstsq(whole.T, own, rcond=1e-10)[0], float)
         for name, whole, own in zip(Basis._fields, (even, even, odd), axes, strict=True)
@@ -134,6 +138,37 @@ def density(drawn: Mapping[str, Departures]) -> dict[str, Floats]:
     for family, one in drawn.items():
         found[family] = _coordinates(one, axes)
     return found
+
+
+def with_more(kept: Mapping[str, Floats], drawn: Mapping[str, Departures]) -> dict[str, Floats]:
+    """A density with more sensors, in the coordinates it has.
+
+    Parameters
+    ----------
+    kept : dict of str to array
+        As `density` gives it.
+    drawn : dict of str to Departures
+        Of families that it has, or of new ones.
+    """
+    even, odd = _directions()
+    axes = Basis(*(
+        whole.T @ kept[f"basis {name}"]
+        for name, whole in zip(Basis._fields, (even, even, odd), strict=True)
+    ))  # fmt: skip
+    found = dict(kept)
+    for family, one in drawn.items():
+        more = _coordinates(one, axes)
+        found[family] = np.vstack([found[family], more]) if family in found else more
+    return found
+
+
+def _directions() -> tuple[Floats, Floats]:
+    """The directions of all families, (n, m): even ones, and those odd across."""
+    even, odd, _ = (
+        np.column_stack([*(q.reshape(len(q), -1) for q in group.quadrants), group.tail]) * _metric()
+        for group in learned_families().groups
+    )
+    return even, odd
 
 
 def _coordinates(drawn: Departures, axes: Basis) -> Floats:
