@@ -21,6 +21,7 @@ __all__ = [
     "as_places",
     "crossing",
     "listed",
+    "require_curve",
     "sample",
 ]
 
@@ -94,6 +95,61 @@ def as_places(at: Any, name: str) -> float | Floats:
     return float(places) if places.ndim == 0 else places
 
 
+_MIN_PLACES = 4
+"""Of a curve that is read between its places: a cubic goes through four."""
+_UNEVEN = 1e-3
+"""Documents round places; steps that differ by a greater share are no regular grid."""
+
+
+def require_curve(
+    name: str, places: Any, values: Any, factor: Any, latent: Any, *, kind: str
+) -> None:
+    """Refuse what is no curve: arrays of other shapes, or places that are no regular grid.
+
+    Parameters
+    ----------
+    name : str
+        What the places are called.
+    places, values : (n,) array
+    factor : (n, k) array or Rows
+    latent : (k, m) array or None
+    kind : str
+        What the curve is called: "a curve", "an MTF".
+
+    Raises
+    ------
+    OptionError
+        Says what was given, and what a curve needs.
+    """
+    parts = (places, values, factor) if latent is None else (places, values, factor, latent)
+    shapes = [getattr(part, "shape", None) for part in parts]
+    n, own, rows = shapes[:3]
+    if n is None or len(n) != 1 or own != n or rows is None or len(rows) != 2 or rows[:1] != n:
+        found = [type(p).__name__ if s is None else s for p, s in zip(parts, shapes, strict=True)]
+        raise OptionError(
+            f"{kind} needs arrays: (n,) {name}, (n,) values and an (n, k) factor, found shapes "
+            f"{found[0]}, {found[1]} and {found[2]}"
+        )
+    if latent is not None and (shapes[3] is None or len(shapes[3]) != 2 or shapes[3][0] != rows[1]):
+        raise OptionError(
+            f"{kind} with a factor of shape {rows} needs ({rows[1]}, m) latent variables, found "
+            f"{type(latent).__name__ if shapes[3] is None else shapes[3]}"
+        )
+    steps = places[1:] - places[:-1]
+    if steps.size and not 0 < steps.max() <= (1 + _UNEVEN) * steps.min() < np.inf:
+        raise OptionError(
+            f"{name} {places[0]:g}, {places[1]:g} ... {places[-1]:g}: {kind} needs a regular grid "
+            "of increasing, finite numbers; interpolate it onto one"
+        )
+
+
+def _require_readable(grid: Floats) -> None:
+    if grid.size < _MIN_PLACES:
+        raise OptionError(
+            f"a curve of {grid.size} places cannot be read between them: give {_MIN_PLACES} or more"
+        )
+
+
 def _outside(grid: Floats, at: float) -> OptionError:
     return OptionError(
         f"{at:g} lies outside the curve, which runs from {grid[0]:g} to {grid[-1]:g}"
@@ -124,8 +180,9 @@ class Cubic(NamedTuple):
         Raises
         ------
         OptionError
-            If the place lies outside the grid.
+            If the place lies outside the grid, or that has fewer than four places.
         """
+        _require_readable(grid)
         start, size = grid.item(0), grid.size
         step = grid.item(1) - start
         position = (place - start) / step
@@ -156,6 +213,7 @@ class Cubic(NamedTuple):
 
 def _cells(grid: Floats, at: Floats) -> tuple[NDArray[np.intp], Floats]:
     """As `Cubic.at`, at every place of an array: indices (..., 4) and places among them (...)."""
+    _require_readable(grid)
     size = grid.size
     position = (at - grid[0]) / (grid[1] - grid[0])
     inside = (position >= -1e-9) & (position <= size - 1 + 1e-9)

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Self, get_args
 
 import numpy as np
 
+from acutance.arguments import require_choice, require_kind, require_numbers
 from acutance.curves import metrics
 from acutance.curves.estimate import Estimate
 from acutance.curves.grid import Floats
@@ -33,6 +34,11 @@ class Response(ShortRepr):
         Ground sampling distance along the normal in metres.
     rer_centre : {"half", "peak"}, optional
         The point RER is centred on: the 50 % point, or the peak of the LSF.
+
+    Raises
+    ------
+    OptionError
+        If one of them is of another kind.
     """
 
     esf: Esf
@@ -40,6 +46,14 @@ class Response(ShortRepr):
     mtf: Mtf
     gsd_m: float | None = None
     rer_centre: metrics.RerCentre = "half"
+
+    def __post_init__(self) -> None:
+        require_kind(Esf, esf=self.esf)
+        require_kind(Lsf, lsf=self.lsf)
+        require_kind(Mtf, mtf=self.mtf)
+        require_choice(get_args(metrics.RerCentre), rer_centre=self.rer_centre)
+        if self.gsd_m is not None:
+            require_numbers(gsd_m=self.gsd_m)
 
     @cached_property
     def _main_readings(self) -> tuple[Reading, ...]:

@@ -9,9 +9,20 @@ from typing import Any, Self, overload
 
 import numpy as np
 
+from acutance.arguments import require_numbers
 from acutance.curves.estimate import Estimate
 from acutance.curves.estimates import Estimates, estimates_of
-from acutance.curves.grid import Cubic, Floats, Places, Rows, as_places, crossing, listed, sample
+from acutance.curves.grid import (
+    Cubic,
+    Floats,
+    Places,
+    Rows,
+    as_places,
+    crossing,
+    listed,
+    require_curve,
+    sample,
+)
 from acutance.curves.reading import UNDEFINED, Reading
 from acutance.curves.short_repr import ShortRepr
 
@@ -35,6 +46,11 @@ class _SpreadCurve(ShortRepr):
     latent : (k, m) array, optional
         A second factor that all curves of one measurement share: the error is then
         ``factor @ latent @ z``. Nothing of size (n, m) is formed until it is needed.
+
+    Raises
+    ------
+    OptionError
+        If they are no arrays of such shapes, or distances are no regular grid.
     """
 
     distance_px: Floats
@@ -43,12 +59,9 @@ class _SpreadCurve(ShortRepr):
     latent: Floats | None = None
 
     def __post_init__(self) -> None:
-        n = self.distance_px.shape
-        if self.value.shape != n or len(self.factor.shape) != 2 or self.factor.shape[:1] != n:
-            raise ValueError(
-                f"a curve needs (n,) distances, (n,) values and an (n, k) factor, found shapes "
-                f"{n}, {self.value.shape} and {self.factor.shape}"
-            )
+        require_curve(
+            "distance_px", self.distance_px, self.value, self.factor, self.latent, kind="a curve"
+        )
 
     @cached_property
     def std(self) -> Floats:
@@ -62,6 +75,7 @@ class _SpreadCurve(ShortRepr):
 
     def at(self, distance_px: float) -> Cubic:
         """Interpolation of the curve, and of the rows of its factor, at one distance."""
+        require_numbers(distance_px=distance_px)
         return Cubic.at(self.distance_px, distance_px)
 
     def row(self, distance_px: float) -> Floats:
@@ -71,6 +85,7 @@ class _SpreadCurve(ShortRepr):
 
     def passing(self, level: float, start_px: float, direction: int = 1) -> Reading:
         """Where it first passes `level`, going from `start_px` in `direction` (+1 or -1)."""
+        require_numbers(level=level, start_px=start_px)
         place = crossing(self.distance_px, self.value, level, start_px, direction)
         if math.isnan(place):
             return UNDEFINED
@@ -79,7 +94,8 @@ class _SpreadCurve(ShortRepr):
 
     def gradient(self, distance_px: float | Floats) -> Floats:
         """The row of `covariance_factor` at any distance, (m,); at an array of them (..., m)."""
-        rows: Floats = sample(self.distance_px, self.factor, distance_px)
+        at = as_places(distance_px, "distance_px")
+        rows: Floats = sample(self.distance_px, self.factor, at)
         return rows if self.latent is None else rows @ self.latent
 
     @overload

@@ -9,16 +9,20 @@ from typing import Any, Self, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from acutance.arguments import require_numbers
 from acutance.curves.estimate import Estimate
 from acutance.curves.estimates import Estimates, estimates_of
-from acutance.curves.grid import Floats, Places, as_places, listed, sample
+from acutance.curves.grid import Floats, Places, as_places, listed, require_curve, sample
 from acutance.curves.short_repr import ShortRepr
+from acutance.errors import OptionError
 
-__all__ = ["Mtf", "phasor"]
+__all__ = ["Mtf", "mtf_and_std", "phasor"]
 
 Complexes = NDArray[np.complex128]
 
 _SMALLEST = float(np.finfo(float).tiny)
+_SAME_CPP = 1e-6
+"""Frequencies that differ by no more are one place of a grid."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +41,11 @@ class Mtf(ShortRepr):
         Factor of the covariance: the error of `otf` is ``factor @ z``, z standard normal.
     latent : (k, m) array, optional
         A second factor shared by all curves of a measurement: the error is ``factor @ latent @ z``.
+
+    Raises
+    ------
+    OptionError
+        If they are no arrays of such shapes, or frequencies are no regular grid.
     """
 
     freq_cpp: Floats
@@ -45,12 +54,7 @@ class Mtf(ShortRepr):
     latent: Floats | None = None
 
     def __post_init__(self) -> None:
-        n = self.freq_cpp.shape
-        if self.otf.shape != n or self.factor.ndim != 2 or self.factor.shape[:1] != n:
-            raise ValueError(
-                f"an MTF needs (n,) frequencies, (n,) OTF and an (n, k) factor, found shapes "
-                f"{n}, {self.otf.shape} and {self.factor.shape}"
-            )
+        require_curve("freq_cpp", self.freq_cpp, self.otf, self.factor, self.latent, kind="an MTF")
 
     @cached_property
     def _modulus(self) -> tuple[Floats, Floats]:
@@ -82,8 +86,21 @@ class Mtf(ShortRepr):
         return found
 
     def near(self, freq_cpp: Floats) -> Self:
-        """The curve at the places of its grid that frequencies (n,) have."""
-        own = self.freq_cpp.searchsorted(freq_cpp - 1e-9)
+        """The curve at the places of its grid that frequencies (n,) have.
+
+        Raises
+        ------
+        OptionError
+            If one of them is no place of the grid: there the curve has to be called.
+        """
+        asked = np.atleast_1d(as_places(freq_cpp, "freq_cpp"))
+        own = np.minimum(self.freq_cpp.searchsorted(asked - _SAME_CPP), self.freq_cpp.size - 1)
+        is_other = ~(np.abs(self.freq_cpp[own] - asked) <= _SAME_CPP)
+        if is_other.any():
+            raise OptionError(
+                f"{asked[is_other][0]:g} is no place of the curve's grid, freq_cpp "
+                f"{self.freq_cpp[0]:g} to {self.freq_cpp[-1]:g}: call the curve at it"
+            )
         return replace(
             self, freq_cpp=self.freq_cpp[own], otf=self.otf[own], factor=self.factor[own]
         )
@@ -110,16 +127,17 @@ class Mtf(ShortRepr):
 
     def value_and_row(self, freq_cpp: float) -> tuple[float, Floats]:
         """The MTF at one frequency, and what the columns of `factor` add to it, (k,)."""
+        require_numbers(freq_cpp=freq_cpp)
         otf, turned = self._read(freq_cpp)
         return float(_modulus(otf, turned, self.latent)[0]), turned.real
 
     def row(self, freq_cpp: float) -> Floats:
         """What the columns of `factor` add to the MTF at one frequency, (k,)."""
-        return self._read(freq_cpp)[1].real
+        return self._read(as_places(freq_cpp, "freq_cpp"))[1].real
 
     def gradient(self, freq_cpp: float | Floats) -> Floats:
         """The row of `covariance_factor` at any frequency, (m,); at an array of them (..., m)."""
-        return _modulus(*self._read(freq_cpp), self.latent)[1]
+        return _modulus(*self._read(as_places(freq_cpp, "freq_cpp")), self.latent)[1]
 
     @overload
     def __call__(self, freq_cpp: float) -> Estimate: ...
@@ -194,6 +212,19 @@ def _modulus(otf: Complexes, turned: Complexes, latent: Floats | None) -> tuple[
     modulus = np.abs(otf)
     power = modulus**2 - np.einsum("...j,...j->...", quadrature, quadrature)
     return np.asarray(np.sqrt(np.maximum(power, 0.0))), along
+
+
+def mtf_and_std(otf: Complexes, factor: Complexes) -> tuple[Floats, Floats]:
+    """MTF and its standard deviation at places that are no curve, (n,) each.
+
+    Parameters
+    ----------
+    otf : (n,) complex array
+    factor : (n, k) complex array
+        Factor of its covariance.
+    """
+    value, along = _modulus(otf, _turned(otf, factor), None)
+    return value, np.asarray(np.sqrt(np.einsum("ij,ij->i", along, along)))
 
 
 def phasor(otf: Complexes) -> Complexes:

@@ -92,6 +92,7 @@ class Line:
 
     def moved(self, offset_px: float, turn_deg: float) -> Line:
         """The line shifted along its normal, then turned about its point (small changes)."""
+        require_numbers(offset_px=offset_px, turn_deg=turn_deg)
         x, y = self.normal
         return replace(
             self,
@@ -102,10 +103,12 @@ class Line:
 
     def bent(self, curvature_per_px: float) -> Line:
         """The line with some more curvature."""
+        require_numbers(curvature_per_px=curvature_per_px)
         return replace(self, curvature_per_px=self.curvature_per_px + curvature_per_px)
 
     def slid(self, along_px: float) -> Line:
         """The same line, by another of its points."""
+        require_numbers(along_px=along_px)
         x, y = self.normal
         aside_px = 0.5 * self.curvature_per_px * along_px**2
         turn_deg = math.degrees(self.curvature_per_px * along_px)

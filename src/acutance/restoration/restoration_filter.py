@@ -21,7 +21,7 @@ from acutance.errors import OptionError
 from acutance.raster.image import AlongTrack
 from acutance.restoration.filtered_otf import kernel_otf
 from acutance.targets.check import VerdictWord
-from acutance.targets.document_fields import require_document
+from acutance.targets.document_fields import refuse_damaged, require_document
 from acutance.targets.recorded_direction import RecordedDirection
 
 __all__ = ["SCHEMA", "RestorationFilter", "Sharpness", "require_filter"]
@@ -74,12 +74,25 @@ class RestorationFilter(ShortRepr):
     document : mapping
         The document ``acutance/restoration/1``.
 
+    Raises
+    ------
+    OptionError
+        If it is none of a filter, or damaged.
+
     Examples
     --------
     >>> filter.after.across.mtf_nyquist, filter.noise_gain, filter.snr_after  # doctest: +SKIP
     """
 
     document: Mapping[str, Any]
+
+    def __post_init__(self) -> None:
+        document = self.document
+        advice = "write one with 'acutance restore design', or with to_dict()"
+        require_document(document, SCHEMA, _REQUIRED, name="the filter", advice=advice)
+        with refuse_damaged("the filter", "give one that 'acutance restore design' wrote"):
+            _require_kernel(self.kernel, float(document["noise_gain"]))
+            _ = self.before.summary(), self.after.summary(), self.niirs_change, self.gsd_m
 
     @classmethod
     def from_dict(cls, document: Any) -> RestorationFilter:
@@ -90,18 +103,7 @@ class RestorationFilter(ShortRepr):
         OptionError
             If it is none of a filter, or damaged.
         """
-        advice = "write one with 'acutance restore design', or with to_dict()"
-        require_document(document, SCHEMA, _REQUIRED, name="the filter", advice=advice)
-        found = cls(document)
-        try:
-            _require_kernel(found.kernel, float(document["noise_gain"]))
-            _ = found.before.summary(), found.after.summary(), found.niirs_change, found.gsd_m
-        except (AttributeError, KeyError, TypeError, ValueError, IndexError) as error:
-            raise OptionError(
-                f"the filter cannot be read ({error}): give one that 'acutance restore design' "
-                "wrote"
-            ) from error
-        return found
+        return cls(document)
 
     @classmethod
     def read(cls, path: str | Path) -> RestorationFilter:

@@ -13,8 +13,10 @@ from functools import cached_property
 from numbers import Real
 from typing import TYPE_CHECKING, Any, Literal, overload
 
+from acutance.arguments import require_choice
 from acutance.errors import OptionError
 from acutance.targets.check_table import QUESTIONS
+from acutance.targets.document_fields import refuse_damaged
 from acutance.targets.question import Question, Sense, Severity, limit_range
 
 __all__ = [
@@ -119,19 +121,28 @@ class Check:
 
     @classmethod
     def from_dict(cls, document: Mapping[str, Any]) -> Check:
-        """The check that `to_dict` wrote; of older documents the limit is read from its text."""
-        sense, _, number = str(document["limit"]).partition(" ")
-        limit = document.get("limit_value", number or math.nan)
-        value = document["value"]
-        return cls(
-            str(document["name"]),
-            math.nan if value is None else float(value),
-            "<=" if sense == "<=" else ">=",
-            math.nan if limit is None else float(limit),
-            bool(document["passed"]),
-            str(document["message"]),
-            document.get("severity", "caution"),
-        )
+        """The check that `to_dict` wrote; of older documents the limit is read from its text.
+
+        Raises
+        ------
+        OptionError
+            If it is none, or damaged.
+        """
+        with refuse_damaged("a check", "give what to_dict() returned"):
+            severity = document.get("severity", "caution")
+            require_choice(_WORDS, severity=severity)
+            sense, _, number = str(document["limit"]).partition(" ")
+            limit = document.get("limit_value", number or math.nan)
+            value = document["value"]
+            return cls(
+                str(document["name"]),
+                math.nan if value is None else float(value),
+                "<=" if sense == "<=" else ">=",
+                math.nan if limit is None else float(limit),
+                bool(document["passed"]),
+                str(document["message"]),
+                severity,
+            )
 
 
 @dataclass(frozen=True)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
 from acutance.errors import OptionError
 
-__all__ = ["DocumentFields", "WrittenLater", "require_document"]
+__all__ = ["DocumentFields", "WrittenLater", "refuse_damaged", "require_document"]
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,9 @@ class DocumentFields(Mapping[str, Any]):
         if isinstance(field, WrittenLater):
             field = self._fields[name] = field.write()
         return field
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._fields
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._fields)
@@ -83,3 +87,29 @@ def require_document(
     missing = [field for field in required if field not in document]
     if missing:
         raise OptionError(f"{name} lacks {', '.join(missing)}: it was cut or changed")
+
+
+@contextmanager
+def refuse_damaged(name: str, advice: str, of: str = "") -> Iterator[None]:
+    """Say in words that a document could not be read, whatever its reader stumbled over.
+
+    Parameters
+    ----------
+    name : str
+        What the document is called: "the filter".
+    advice : str
+        What to give instead: "give one that ... wrote".
+    of : str, optional
+        What it is read as, where its name does not say so.
+
+    Raises
+    ------
+    OptionError
+        Names what was missing, or not as it has to be.
+    """
+    try:
+        yield
+    except (AttributeError, KeyError, TypeError, ValueError, IndexError) as error:
+        missing = f"it has no {error}" if isinstance(error, KeyError) else str(error)
+        read = f"read as {of}" if of else "read"
+        raise OptionError(f"{name} cannot be {read} ({missing}): {advice}") from error

@@ -28,7 +28,7 @@ from acutance.raster.band_label import label_band
 from acutance.raster.image import AlongTrack
 from acutance.targets.check import Check, HasChecks, count_failed
 from acutance.targets.directions import HasDirections
-from acutance.targets.document_fields import require_document
+from acutance.targets.document_fields import refuse_damaged, require_document
 from acutance.targets.recorded_direction import RecordedDirection
 from acutance.targets.slices import OtfSlices
 from acutance.targets.uncertainty_budget import BudgetTerm
@@ -150,7 +150,18 @@ class ImageInfo:
 
     @classmethod
     def from_dict(cls, document: Mapping[str, Any]) -> ImageInfo:
-        """What `to_dict` wrote; older documents knew but one GSD, of square pixels."""
+        """What `to_dict` wrote; older documents knew but one GSD, of square pixels.
+
+        Raises
+        ------
+        OptionError
+            If it is none, or damaged.
+        """
+        with refuse_damaged("the image of a measurement", "give what to_dict() returned"):
+            return cls._read(document)
+
+    @classmethod
+    def _read(cls, document: Mapping[str, Any]) -> ImageInfo:
         row, col, height, width = document["roi"]
         sides, gsd_m = document.get("pixel_gsd_m"), document.get("gsd_m")
         of_file = document.get("file_gsd_m")
@@ -182,6 +193,11 @@ class Record(ShortRepr, HasDirections[RecordedDirection], HasChecks):
         The document, in strict JSON types. Fields that this version does not have are kept as they
         are.
 
+    Raises
+    ------
+    OptionError
+        If it is no such document. What its fields hold is checked by `from_dict`.
+
     Examples
     --------
     >>> record = ac.Record.from_dict(json.loads(text))  # doctest: +SKIP
@@ -189,6 +205,10 @@ class Record(ShortRepr, HasDirections[RecordedDirection], HasChecks):
     """
 
     fields: Mapping[str, Any]
+
+    def __post_init__(self) -> None:
+        advice = "write one with a measuring command and --json, or with to_dict()"
+        require_document(self.fields, SCHEMA, _REQUIRED, name="the document", advice=advice)
 
     @cached_property
     def document(self) -> dict[str, Any]:
@@ -204,19 +224,11 @@ class Record(ShortRepr, HasDirections[RecordedDirection], HasChecks):
         OptionError
             If it is none of a measurement, or damaged.
         """
-        advice = "write one with a measuring command and --json, or with to_dict()"
-        require_document(document, SCHEMA, _REQUIRED, name="the document", advice=advice)
         record = cls(document)
-        try:
+        with refuse_damaged("the document", "give one that acutance wrote", "a measurement"):
             _ = record.image, record.checks, record.budget, record.snr, record.measured_at
             _ = {name: one.numbers for name, one in record.directions.items()}
             _ = [record.directions[name] for name in record.measured_directions]
-        except (AttributeError, KeyError, TypeError, ValueError, IndexError) as error:
-            reason = str(error) if isinstance(error, OptionError) else repr(error)
-            raise OptionError(
-                f"the document cannot be read as a measurement ({reason}): give one that "
-                "acutance wrote"
-            ) from error
         return record
 
     def __getattr__(self, name: str) -> Any:
@@ -239,8 +251,20 @@ class Record(ShortRepr, HasDirections[RecordedDirection], HasChecks):
 
     @classmethod
     def from_bytes(cls, stored: bytes) -> Record:
-        """The record that `to_bytes` stored."""
-        return cls.from_dict(json.loads(lzma.decompress(stored)))
+        """The record that `to_bytes` stored.
+
+        Raises
+        ------
+        OptionError
+            If they are other bytes, or damaged.
+        """
+        try:
+            document = json.loads(lzma.decompress(stored))
+        except (TypeError, ValueError, EOFError, lzma.LZMAError) as error:
+            raise OptionError(
+                f"{_sized(stored)} are no stored record ({error}): give what to_bytes() returned"
+            ) from error
+        return cls.from_dict(document)
 
     def __reduce__(self) -> tuple[Any, tuple[bytes]]:
         # Thousands of edges cross processes: LZMA would take longer than to measure them.
@@ -334,6 +358,13 @@ class Record(ShortRepr, HasDirections[RecordedDirection], HasChecks):
         """Target and method, the main numbers, and how many checks failed."""
         named = (f"{name}: {self.directions[name].summary()}" for name in self.measured_directions)
         return f"{self.kind} by {self.method}, {', '.join(named)}, {count_failed(self.checks)}"
+
+
+def _sized(stored: object) -> str:
+    """What was to be unpacked, in a few words."""
+    if isinstance(stored, bytes | bytearray):
+        return f"{len(stored)} bytes"
+    return f"the contents of {stored!r:.80}"
 
 
 def _unpacked(packed: bytes) -> Record:

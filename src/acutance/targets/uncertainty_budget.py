@@ -18,6 +18,7 @@ import numpy as np
 from acutance.curves import MAIN_NUMBERS, Response
 from acutance.curves.grid import Floats
 from acutance.geometry.line import Orientation
+from acutance.targets.document_fields import refuse_damaged
 
 __all__ = [
     "MAIN_NUMBERS",
@@ -148,9 +149,16 @@ class BudgetTerm:
 
     @classmethod
     def from_dict(cls, document: Mapping[str, Any]) -> BudgetTerm:
-        """The row that `to_dict` wrote."""
-        std, share = (_with_nan(document[name]) for name in ("std", "share"))
-        return cls(document["direction"], str(document["term"]), std, share)
+        """The row that `to_dict` wrote.
+
+        Raises
+        ------
+        OptionError
+            If it is none, or damaged.
+        """
+        with refuse_damaged("a row of an uncertainty budget", "give what to_dict() returned"):
+            std, share = (_with_nan(document[name]) for name in ("std", "share"))
+            return cls(document["direction"], str(document["term"]), std, share)
 
 
 def budget_rows(

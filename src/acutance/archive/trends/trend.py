@@ -31,7 +31,7 @@ from acutance.curves.metric_bounds import limit_fault, lowest_of
 from acutance.curves.metric_words import metric_words
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
-from acutance.targets.document_fields import require_document
+from acutance.targets.document_fields import refuse_damaged, require_document
 
 __all__ = ["SCHEMA", "BadDay", "Trend"]
 
@@ -384,15 +384,16 @@ class Trend(ShortRepr):
         Raises
         ------
         OptionError
-            If the document is none of a trend.
+            If the document is none of a trend, or damaged.
         """
         advice = "write one with acutance archive trend and --json"
         require_document(document, SCHEMA, _REQUIRED, name="the trend", advice=advice)
-        return cls(
-            metric=document["metric"], name=document["name"],
-            measurements=document["measurements"],
-            images=ImageMeans.from_dict(document["images"]),
-            posterior=read_posterior(document["posterior"]),
-            bad_days=tuple(map(BadDay.from_dict, document["bad_days"])),
-            notes=tuple(document["notes"]),
-        )  # fmt: skip
+        with refuse_damaged("the trend", advice):
+            return cls(
+                metric=document["metric"], name=document["name"],
+                measurements=document["measurements"],
+                images=ImageMeans.from_dict(document["images"]),
+                posterior=read_posterior(document["posterior"]),
+                bad_days=tuple(map(BadDay.from_dict, document["bad_days"])),
+                notes=tuple(document["notes"]),
+            )  # fmt: skip

@@ -7,9 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from acutance.curves import Estimate, Mtf, Otf2d
+from acutance.curves import Estimate, Otf2d
 from acutance.curves.direction import unit_vector
 from acutance.curves.metrics import NYQUIST_CPP
+from acutance.curves.transfer import mtf_and_std
 from acutance.errors import OptionError
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd
@@ -137,9 +138,9 @@ def _part(one: MeasuredInput, chi_square: ChiSquare, otf: Otf2d) -> CombinedPart
     slices = one.slices
     u, v = slices.places
     shape = slices.normal_deg.size, slices.freq_cpp.size
-    # As a curve over all places: each with its own value and standard deviation.
-    own = Mtf(u, slices.otf, slices.factor)
-    fitted = Mtf(u, otf.model.otf(u, v), otf.model.factor(u, v))
+    value, std = mtf_and_std(slices.otf, slices.factor)
+    fitted = otf.model.otf(u, v)
+    _, fitted_std = mtf_and_std(fitted, otf.model.factor(u, v))
     direction = slices.normal_deg[0]
     at = int(np.argmin(np.abs(slices.freq_cpp - NYQUIST_CPP)))
     return CombinedPart(
@@ -149,13 +150,13 @@ def _part(one: MeasuredInput, chi_square: ChiSquare, otf: Otf2d) -> CombinedPart
         one.image.path,
         tuple(slices.normal_deg.tolist()),
         chi_square,
-        Estimate(float(own.value[at]), float(own.std[at])),
+        Estimate(float(value[at]), float(std[at])),
         _along(otf, float(direction), float(slices.freq_cpp[at])),
         slices.freq_cpp,
-        own.value.reshape(shape),
-        own.std.reshape(shape),
-        np.abs(fitted.otf).reshape(shape),
-        fitted.std.reshape(shape),
+        value.reshape(shape),
+        std.reshape(shape),
+        np.abs(fitted).reshape(shape),
+        fitted_std.reshape(shape),
     )
 
 
@@ -163,5 +164,5 @@ def _along(otf: Otf2d, normal_deg: float, freq_cpp: float) -> Estimate:
     """The combined MTF at one place of the plane."""
     x, y = unit_vector(normal_deg)
     u, v = np.array([freq_cpp * x]), np.array([freq_cpp * y])
-    one = Mtf(u, otf.model.otf(u, v), otf.model.factor(u, v))
-    return Estimate(float(one.value[0]), float(one.std[0]))
+    value, std = mtf_and_std(otf.model.otf(u, v), otf.model.factor(u, v))
+    return Estimate(float(value[0]), float(std[0]))

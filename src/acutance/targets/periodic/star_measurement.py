@@ -14,6 +14,7 @@ from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP, mtf_crossing
 from acutance.curves.short_repr import ShortRepr
+from acutance.curves.transfer import mtf_and_std
 from acutance.geometry.star_geometry import SiemensStar
 from acutance.targets.measurement import Measurement
 from acutance.targets.periodic.fit_star import SIDE_MARGIN_PX
@@ -112,9 +113,7 @@ class StarMeasurement(Measurement):
         """MTF at one frequency in some directions, and its standard deviation, (n,) each."""
         x, y = unit_vector(directions_deg)
         u, v = freq_cpp * x, freq_cpp * y
-        # As a curve over directions: every one with its own variance.
-        curve = Mtf(directions_deg, self.otf.model.otf(u, v), self.otf.model.factor(u, v))
-        return curve.value, curve.std
+        return mtf_and_std(self.otf.model.otf(u, v), self.otf.model.factor(u, v))
 
     @property
     def mean_mtf_nyquist(self) -> Estimate:
