@@ -22,6 +22,7 @@ __all__ = [
     "require_finite",
     "require_flags",
     "require_floats",
+    "require_function",
     "require_kind",
     "require_numbers",
     "require_optional",
@@ -93,6 +94,19 @@ def require_flags(**values: Any) -> None:
     for name, value in values.items():
         if not isinstance(value, bool | np.bool_):
             raise OptionError(f"{name} is {value!r:.80}, it has to be True or False")
+
+
+def require_function(**values: Any) -> None:
+    """Refuse what is neither left out (``None``) nor can be called.
+
+    Raises
+    ------
+    OptionError
+        Names the argument.
+    """
+    for name, value in values.items():
+        if value is not None and not callable(value):
+            raise OptionError(f"{name} is {value!r:.80}: give a function, or leave it out")
 
 
 def require_kind(kind: type[Any], **values: Any) -> None:

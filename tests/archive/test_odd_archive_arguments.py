@@ -46,6 +46,19 @@ def correction(image, **values):
         lambda a, x: a.export("never.jsonl", to=x),
         lambda a, x: a.export(x if not isinstance(x, str) else 3, to="jsonl"),
         lambda a, x: a.import_documents([], sensor=x if not isinstance(x, str) else 3),
+        lambda a, x: a.import_documents(["never.json"], run=x),
+        lambda a, x: a.import_documents(["never.json"], progress=x if x is not list else 3),
+        lambda a, x: a.import_documents(["never.json"], target=x if not isinstance(x, str) else 3),
+        lambda a, x: a.export("never.jsonl", to="jsonl", progress=x if x is not list else 3),
+        lambda a, x: a.add_entries([], run=x),
+        lambda a, x: a.add_entries([], progress=x if x is not list else 3),
+        lambda a, x: a.start_run(x if not isinstance(x, dict) else 3),
+        lambda a, x: a.end_run(x, {}),
+        lambda a, x: a.end_run(1, x if not isinstance(x, dict) else 3),
+        lambda a, x: a.earlier_contents(x if not isinstance(x, dict) else 3),
+        lambda a, x: a.kept_otherwise(x if not isinstance(x, dict) else 3),
+        lambda a, x: a.kept_otherwise({}, x if not isinstance(x, dict) else 3),
+        lambda a, x: a.require_known_names(x),
         lambda a, x: a.measurements(kind=x),
         lambda a, x: a.measurements(orientation=x),
         lambda a, x: a.measurements(verdict=x),
@@ -68,7 +81,7 @@ def correction(image, **values):
 )
 def test_what_is_of_the_wrong_kind_is_refused(archive, call, wrong):
     with pytest.raises(
-        AcutanceError, match=r"give|ha(s|ve) to|there is no|it is|choose|select|write"
+        AcutanceError, match=r"give|ha(s|ve) to|there is no|it is|choose|select|write|there are"
     ):
         call(archive, wrong)
 

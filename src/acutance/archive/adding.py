@@ -25,6 +25,7 @@ from acutance.archive.possible_values import require_possible
 from acutance.archive.rows import EntryRows, image_row, rows_of, target_row
 from acutance.archive.runs import complete_runs, ids_of_runs, with_whole_runs
 from acutance.archive.tables import directions, documents, images, measurements, runs, targets
+from acutance.arguments import require_function, require_whole
 from acutance.errors import OptionError
 from acutance.targets.measurement import Measurement
 from acutance.targets.record import Record
@@ -104,6 +105,9 @@ def add_entries(
     """
     if isinstance(entries, str) or not isinstance(entries, Iterable):
         raise OptionError(f"entries are {entries!r:.80}: give a list of Entry(...)")
+    require_function(progress=progress)
+    if run is not None:
+        require_whole(0, run=run)
     added, read = 0, 0
     with ThreadPoolExecutor(1) as writer:
         # While one chunk is written, the next is put into rows.

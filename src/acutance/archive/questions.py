@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Unpack
 
 from acutance.archive.comparison_margin import MARGIN
 from acutance.archive.connection import Database
 from acutance.archive.measurements import Measurements
 from acutance.archive.selection import Selection, SelectionWords
+from acutance.arguments import require_kind
 
 if TYPE_CHECKING:
     from acutance.archive.comparisons import GroupComparison
@@ -52,6 +53,7 @@ class Questions(ABC):
         """
         from acutance.archive.known_names import require_known_names
 
+        require_kind(Mapping, selection=selection)
         require_known_names(self._database, Selection.of(selection))
 
     def series(self, metric: str, **selection: Unpack[SelectionWords]) -> Series:

@@ -12,7 +12,7 @@ from acutance.archive.entry import ImageEntry
 from acutance.archive.outcomes import Outcome, kept_outcomes
 from acutance.archive.removing import earlier_contents, remove_images, remove_rejections
 from acutance.archive.runs import end_run, kept_keys, start_run
-from acutance.arguments import require_texts, require_whole
+from acutance.arguments import require_kind, require_texts, require_whole
 
 __all__ = ["RowsOfRuns"]
 
@@ -50,10 +50,13 @@ class RowsOfRuns:
 
     def start_run(self, plan: Mapping[str, Any]) -> int:
         """Write down that a run began, with its plan; returns its number."""
+        require_kind(Mapping, plan=plan)
         return start_run(self._database, plan)
 
     def end_run(self, run: int, summary: Mapping[str, Any]) -> None:
         """Write down that a run ended, with its summary."""
+        require_whole(0, run=run)
+        require_kind(Mapping, summary=summary)
         end_run(self._database, run, summary)
 
     def kept_otherwise(
@@ -76,6 +79,7 @@ class RowsOfRuns:
             By the path of the image in the archive, and by the name of what is known ("sensor"):
             what is kept, and what is known.
         """
+        require_kind(Mapping, stated=stated, said=said)
         return kept_otherwise(self._database, stated, said)
 
     def remove_rejections(self, keys: Iterable[str]) -> int:
@@ -106,6 +110,7 @@ class RowsOfRuns:
         dict of str to list of str
             SHA-256; paths that have no other content are left out.
         """
+        require_kind(Mapping, now=now)
         return earlier_contents(self._database, now)
 
     def remove_images(self, images: Sequence[str], *, dry_run: bool = False) -> int:

@@ -39,6 +39,12 @@ class Stated:
     acquired: datetime | None = None
     target: TargetEntry | str | None = field(default=None)
 
+    def __post_init__(self) -> None:
+        if not isinstance(self.target, TargetEntry | str | None):
+            raise OptionError(
+                f"target is a {type(self.target).__name__}: give a name or a TargetEntry"
+            )
+
 
 def entries_of(document: Any, stated: Stated) -> Iterator[Entry]:
     """Entries of a document: of a measurement, of many, or of an export.

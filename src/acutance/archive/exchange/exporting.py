@@ -17,7 +17,7 @@ from acutance.archive.exchange.stac import write_stac
 from acutance.archive.runs import named_once
 from acutance.archive.selection import Selection
 from acutance.archive.stored_entries import select_ids, undamaged_entries
-from acutance.arguments import require_path
+from acutance.arguments import require_function, require_path
 from acutance.errors import OptionError
 
 __all__ = ["FORMATS", "export_entries"]
@@ -64,6 +64,7 @@ def export_entries(
         that of an archive.
     """
     require_path(place=place)
+    require_function(progress=progress)
     if not isinstance(to, str) or to not in FORMATS:
         raise OptionError(f"there is no format {to!r} to export to, only {', '.join(FORMATS)}")
     path = Path(place)
