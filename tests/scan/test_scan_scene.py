@@ -1,6 +1,7 @@
 """Whole scenes: the sensor comes out, whatever the objects are; what cannot be told is said."""
 
 import json
+import re
 import sys
 
 import numpy as np
@@ -275,8 +276,16 @@ def test_a_scene_of_bare_samples_is_refused_in_words():
         ac.Sensor([ac.optics.Detector(0.3)]), shape=(400, 400),
         options=bare_ground(soft=0.0), rng=np.random.default_rng(3),
     )  # fmt: skip
-    with pytest.raises(ac.NoEdgeError, match="0 of them can be used"):
+    with pytest.raises(ac.FewEdgesError, match="0 of them can be used") as refused:
         ac.scan_scene(bare)
+    # The most frequent reasons are in the message, each with how many edges it left out.
+    edges = refused.value.edges
+    _, named = str(refused.value).split("of the others ", 1)
+    counts = re.findall(r"(\d+) (?:rejected|doubtful|invalid) \((?:[^()]+)\)", named)
+    others = re.search(r"(\d+) for other reasons", named)
+    assert 1 <= len(counts) <= 3
+    assert counts == sorted(counts, key=int, reverse=True)
+    assert sum(map(int, counts)) + (int(others[1]) if others else 0) == edges.size
 
 
 def test_edges_are_written_as_parquet(ideal, tmp_path, monkeypatch):

@@ -10,9 +10,9 @@ objects), `shares` (by direction), `population` (what the edges share, and what 
 (how a blur may change), `shared_blur` (what is the sensor's or all objects'), `parts` (do the parts
 of a scene agree), `field_fit` and `field` (over the field of view), `sensor_fit` (the sensor over
 the plane of frequencies), `stated_objects` (what is stated of all objects), `scene` (the public
-function), `scene_edges` and `scene_measurement` (its result; written by `edge_table` and
-`parquet`), `borders` (edges of one object) and `checks` (is the scene rich enough), `bands`
-(several bands at once; `band_shift` between them), `options`.
+function), `left_out` (why edges are not used), `scene_edges` and `scene_measurement` (its result;
+written by `edge_table` and `parquet`), `borders` (edges of one object) and `checks` (is the scene
+rich enough), `bands` (several bands at once; `band_shift` between them), `options`.
 """
 
 from __future__ import annotations

@@ -20,6 +20,7 @@ from acutance.scan.checks import check_scene
 from acutance.scan.edge_likelihoods import EdgeLikelihoods
 from acutance.scan.field import Field, field_places
 from acutance.scan.first_guesses import BIN_DEG, sensor_guesses
+from acutance.scan.left_out import left_out_by_reason
 from acutance.scan.options import ScanOptions
 from acutance.scan.scene_edges import SceneEdges
 from acutance.scan.scene_measurement import SceneMeasurement
@@ -34,6 +35,8 @@ from acutance.targets.region import RoiLike, image_info, read_data
 __all__ = ["edges_of_scene", "measured_scene", "scan_scene"]
 
 _MIN_EDGES = 8
+_REASONS = 3
+"""Of edges left out, that the error names; its `edges` have all of them."""
 _MIN_GAP_DEG = 20.0
 
 
@@ -218,12 +221,16 @@ def _fit(used: Sequence[UsedEdge], edges: SceneEdges, image: Image, box: Box) ->
 
 
 def _common_reason(edges: SceneEdges) -> str:
-    """The most frequent word of why edges are left out."""
-    unused = edges.verdict[~edges.used & ~np.char.startswith(edges.reason, UNSEEN)]
-    if not unused.size:
+    """The most frequent reasons why edges are left out, with their counts."""
+    unused = ~edges.used & ~np.char.startswith(edges.reason, UNSEEN)
+    pairs = zip(edges.verdict[unused].tolist(), edges.reason[unused].tolist(), strict=True)
+    found = left_out_by_reason(pairs)
+    if not found:
         return ""
-    words, counts = np.unique(unused, return_counts=True)
-    return f"most of the others are {words[int(np.argmax(counts))]}; "
+    named = [f"{one.edges} {one.verdict} ({one.reason})" for one in found[:_REASONS]]
+    others = sum(one.edges for one in found[_REASONS:])
+    named += [f"{others} for other reasons"] if others else []
+    return f"of the others {', '.join(named)}; "
 
 
 def _processing(image: Image, box: Box) -> str:
