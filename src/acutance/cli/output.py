@@ -218,7 +218,7 @@ def _place(path: Path) -> Path:
 def _part_path(place: Path) -> Iterator[Path]:
     """A name on the file system where the content goes, so that a rename puts it in place."""
     # Help, which writes nothing, does without numpy.
-    from acutance.raster.partial_folder import partial_folder
+    from acutance.execution.partial_folder import partial_folder
 
     with partial_folder(place) as folder:
         yield Path(folder, place.name)

@@ -31,6 +31,7 @@ import numpy as np
 
 from acutance.arguments import require_kind, require_path, require_types
 from acutance.errors import ModelError, OptionError
+from acutance.execution.partial_folder import whole_file
 from acutance.optics.block import Block
 from acutance.optics.catalogue import BLOCKS
 from acutance.optics.sensor import Sensor, require_sensor
@@ -128,7 +129,7 @@ def write_sensor(described: Sensor | SensorFile, path: str | os.PathLike[str]) -
     ----------
     described : Sensor or SensorFile
     path : str or path
-        An existing file is replaced.
+        An existing file is replaced once the new one is whole.
 
     Raises
     ------
@@ -142,7 +143,8 @@ def write_sensor(described: Sensor | SensorFile, path: str | os.PathLike[str]) -
         described if isinstance(described, SensorFile) else SensorFile(require_sensor(described))
     )
     try:
-        Path(path).write_text(text, encoding="utf-8")
+        with whole_file(path) as part:
+            part.write_text(text, encoding="utf-8")
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise ModelError(f"{path} cannot be written ({reason}): choose another path") from error

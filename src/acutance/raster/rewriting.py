@@ -16,13 +16,13 @@ from rasterio.enums import ColorInterp, MaskFlags
 from rasterio.shutil import copy
 from rasterio.windows import Window
 
+from acutance.execution.partial_folder import partial_folder
 from acutance.raster.dataset import (
     CACHE_BYTES,
     open_quietly,
     opened_dataset,
     read_in_our_words,
 )
-from acutance.raster.partial_folder import partial_folder
 from acutance.raster.pixels import equals_nodata
 from acutance.raster.region import Box
 from acutance.raster.unified_nodata import UnifiedNodata, unified_nodata

@@ -13,9 +13,9 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from acutance.arguments import require_optional, require_path
 from acutance.errors import ImageError, OptionError
+from acutance.execution.partial_folder import partial_folder
 from acutance.raster.geolocation import Geolocation
 from acutance.raster.gsd import GSD_TAGS, Gsd
-from acutance.raster.partial_folder import partial_folder
 from acutance.raster.pixels import require_nodata
 from acutance.raster.region import Box
 

@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from acutance.arguments import require_choice, require_class, require_path, require_whole
+from acutance.errors import OptionError
+from acutance.execution.partial_folder import whole_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure, FigureBase, SubFigure
@@ -149,11 +151,18 @@ def figure_bytes(figure: Figure, ending: str, dpi: int = 150) -> bytes:
 def save_figure(figure: Figure, path: str | Path, dpi: int = 150) -> None:
     """Write the figure as PNG, SVG or PDF, as the file's ending says.
 
+    A file that was there is replaced once the new one is whole.
+
     Raises
     ------
     OptionError
-        If an argument is of the wrong kind, or there is no such ending.
+        If an argument is of the wrong kind, there is no such ending, or the file cannot be written.
     """
     require_path(path=path)
-    target = Path(path)
-    target.write_bytes(figure_bytes(figure, target.suffix.lower(), dpi))
+    content = figure_bytes(figure, Path(path).suffix.lower(), dpi)
+    try:
+        with whole_file(path) as part:
+            part.write_bytes(content)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise OptionError(f"{path} cannot be written ({reason}): choose another path") from error

@@ -18,8 +18,8 @@ from numpy.typing import ArrayLike, NDArray
 from acutance.arguments import require_flags, require_path
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import ImageError, NoDataError, OptionError
+from acutance.execution.partial_folder import partial_folder
 from acutance.raster import Box, Image, SwathFill, find_swath_fill, open_image
-from acutance.raster.partial_folder import partial_folder
 from acutance.raster.pixels import (
     equals_nodata,
     largest_count,

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from acutance.errors import AcutanceError, OptionError
-from acutance.raster.partial_folder import partial_folder
+from acutance.execution import partial_folder
 
 __all__ = ["refusals_in_words", "whole_file"]
 
@@ -24,10 +23,8 @@ def whole_file(place: Path) -> Iterator[Path]:
     OptionError
         If the file system refuses.
     """
-    with refusals_in_words(place), partial_folder(place) as folder:
-        part = Path(folder, place.name)
+    with refusals_in_words(place), partial_folder.whole_file(place) as part:
         yield part
-        os.replace(part, place)
 
 
 @contextmanager

@@ -29,8 +29,8 @@ from acutance.archive.exchange.stac_item import (
 )
 from acutance.archive.packing import json_bytes
 from acutance.errors import OptionError
+from acutance.execution.partial_folder import partial_folder
 from acutance.geometry.angles import wrap_direction
-from acutance.raster.partial_folder import partial_folder
 
 __all__ = ["write_stac"]
 

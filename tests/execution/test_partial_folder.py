@@ -6,10 +6,12 @@ import sys
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
-from acutance.raster import partial_folder as module
+import acutance as ac
+from acutance.execution import partial_folder as module
+from acutance.execution.partial_folder import partial_folder, whole_file
 from acutance.raster import write_geotiff
-from acutance.raster.partial_folder import partial_folder
 
 
 @pytest.fixture(scope="module")
@@ -71,3 +73,55 @@ def test_the_folder_of_another_user_stays(tmp_path, left_behind, monkeypatch):
     monkeypatch.setattr(module.os, "getuid", lambda: user)
     write_geotiff(tmp_path / "a.tif", np.zeros((300, 300)))
     assert (left_behind / "image.tif").exists()
+
+
+SENSOR = ac.optics.preset("generic-2005")
+
+
+def _refuse(part, *_, **__):
+    with part.open("wb") as file:
+        file.write(b"half")
+    raise KeyboardInterrupt
+
+
+@pytest.mark.parametrize(
+    ("name", "write"),
+    [
+        (
+            "sensor.toml",
+            lambda path: ac.optics.write_sensor(ac.optics.preset("generic-2005"), path),
+        ),
+        ("figure.png", lambda path: ac.report.save_figure(Figure(), path)),
+    ],
+)
+def test_an_interrupted_file_leaves_the_one_that_was_there(tmp_path, monkeypatch, name, write):
+    path = tmp_path / name
+    path.write_bytes(b"before")
+    with monkeypatch.context() as broken:
+        broken.setattr("pathlib.Path.write_text", _refuse)
+        broken.setattr("pathlib.Path.write_bytes", _refuse)
+        with pytest.raises(KeyboardInterrupt):
+            write(path)
+    assert [one.name for one in tmp_path.iterdir()] == [name]
+    assert path.read_bytes() == b"before"
+    write(path)
+    assert path.read_bytes() != b"before"
+
+
+def test_a_link_stays_one_and_a_pipe_is_written_to(tmp_path):
+    linked = tmp_path / "link.txt"
+    linked.symlink_to(tmp_path / "there.txt")
+    with whole_file(linked) as part:
+        part.write_bytes(b"all")
+    assert linked.is_symlink()
+    assert (tmp_path / "there.txt").read_bytes() == b"all"
+    os.mkfifo(tmp_path / "pipe")
+    with whole_file(tmp_path / "pipe") as part:
+        assert part == tmp_path / "pipe"
+
+
+@pytest.mark.parametrize("place", ["no/figure.png", "a\0b.png", "folder.png"])
+def test_a_figure_that_cannot_be_written_is_refused_in_words(tmp_path, place):
+    (tmp_path / "folder.png").mkdir()
+    with pytest.raises(ac.OptionError, match=r"(?s)cannot be written \(.*\): choose another path"):
+        ac.report.save_figure(Figure(), tmp_path / place)

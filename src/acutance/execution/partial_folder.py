@@ -1,4 +1,4 @@
-"""The hidden folder in which an image grows until it gets its name, and those of killed runs."""
+"""The hidden folder in which a file grows until it gets its name, and those of killed runs."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-__all__ = ["partial_folder"]
+__all__ = ["partial_folder", "whole_file"]
 
 
 @contextmanager
@@ -34,6 +34,31 @@ def partial_folder(target: Path) -> Iterator[str]:
     prefix = f".acutance-{_system()}-{os.getpid()}-"
     with TemporaryDirectory(prefix=prefix, dir=target.parent) as folder:
         yield folder
+
+
+@contextmanager
+def whole_file(target: str | os.PathLike[str]) -> Iterator[Path]:
+    """A name to write under; at the end the file is renamed, or removed after an error.
+
+    A file that was there stays as it is until then. Links are followed, and what is no ordinary
+    file (a pipe, a terminal) is written to as it is. What the file system refuses is its own error.
+
+    Parameters
+    ----------
+    target : str or path
+
+    Yields
+    ------
+    Path
+    """
+    place = Path(os.path.realpath(target))
+    if place.exists() and not place.is_file():
+        yield place
+        return
+    with partial_folder(place) as folder:
+        part = Path(folder, place.name)
+        yield part
+        os.replace(part, place)
 
 
 def _system() -> str:
