@@ -8,6 +8,7 @@ import os
 import pytest
 
 from acutance.archive import Archive, Entry, ImageEntry
+from acutance.errors import OptionError
 from acutance.targets.target_result import Rejected
 
 
@@ -54,6 +55,22 @@ def test_rows_of_missing_files_that_version_0_1_kept_are_replaced(
     with Archive(tmp_path / "kept.db") as archive:
         paths = [one.image.path for one in archive.entries() if one.rejected is not None]
     assert paths == ([] if arrives else [str(folders[0] / "x.tif")])
+
+
+def test_a_folder_that_is_called_an_image_is_one_row(write_field, run, rows, tmp_path):
+    good, folder = write_field(0), tmp_path / "x.tif"
+    folder.mkdir()
+    # As a shell writes images/*.tif.
+    found = run(good, folder)
+    assert found.unreadable == (str(folder),)
+    assert found.verdicts == run(good, targets=None).verdicts
+    (reason,) = rows()[1]["reason"]
+    assert "x.tif cannot be read" in reason
+    assert reason.endswith("it is a directory; give the image file inside it")
+    with pytest.raises(
+        OptionError, match=r"no images but folders: .*x\.tif: write .*x\.tif/\*\.tif"
+    ):
+        run(folder)
 
 
 def test_a_name_that_is_no_utf8_is_one_row(write_field, run, rows, tmp_path):

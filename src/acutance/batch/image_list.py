@@ -44,7 +44,8 @@ def list_images(patterns: Iterable[str]) -> list[ImageFile]:
     Raises
     ------
     OptionError
-        If a pattern matches no file, a path is a folder or a plan, or there are no images.
+        If a pattern matches no file, a path is a folder or a plan, or there are no images. Folders
+        with the names of files are images that cannot be read, unless there are no others.
     """
     found: dict[str, ImageFile] = {}
     empty, folders, plans = [], [], []
@@ -56,10 +57,13 @@ def list_images(patterns: Iterable[str]) -> list[ImageFile]:
         for path in paths:
             if is_plan_file(path):
                 plans.append(path)
-            elif is_path and os.path.isdir(path):
+            elif is_path and os.path.isdir(path) and not _is_called_a_file(path):
                 folders.append(path)
             elif is_path or os.path.isfile(path) or _leads_nowhere(path):
                 found.setdefault(os.path.realpath(path), _image_file(path))
+    called = [one.path for one in found.values() if os.path.isdir(one.path)]
+    if len(called) == len(found):
+        folders += called
     faults = [
         *_fault("no file matches", empty, "correct the names of the images"),
         *_fault("no images but folders:", folders, f"write {_inside(folders)}"),
@@ -70,6 +74,14 @@ def list_images(patterns: Iterable[str]) -> list[ImageFile]:
     if not found:
         raise OptionError("there are no images: name files, or a pattern such as images/*.tif")
     return list(found.values())
+
+
+def _is_called_a_file(folder: str) -> bool:
+    """Whether a folder has the name of a file: a shell's *.tif names it among images.
+
+    It is refused by itself, as an image that cannot be read, and the others are measured.
+    """
+    return bool(os.path.splitext(folder.rstrip(os.sep))[1])
 
 
 def _leads_nowhere(path: str) -> bool:
