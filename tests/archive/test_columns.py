@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import re
 import sys
+from datetime import datetime
 
 import numpy as np
 import pytest
@@ -18,6 +21,30 @@ def filled(archive, entry_of):
     archive.add_entries([entry_of(i) for i in range(6)])
     archive.add_entries([entry_of(7, image=ImageEntry(path="<b>undated</b>.tif"))])
     return archive
+
+
+def test_columns_are_written_as_csv(filled):
+    rows = filled.measurements()
+    table = filled.table(by=("sensor",), metrics=("rer",))
+    read = list(csv.DictReader(io.StringIO(rows.to_csv())))
+    assert tuple(read[0]) == rows.names
+    assert [float(one["rer"]) for one in read] == rows["rer"].tolist()
+    assert [int(one["id"]) for one in read] == rows["id"].tolist()
+    known = [one["acquired"] or None for one in rows.rows()]
+    written = [datetime.fromisoformat(one["acquired"]) if one["acquired"] else None for one in read]
+    assert written == known
+    # What is not known is empty, and so is what a row of means does not hold.
+    for name in rows.names:
+        for one, row in zip(read, rows.rows(), strict=True):
+            assert (one[name] == "") == (row[name] is None or row[name] == "")
+    mean, *_ = csv.DictReader(io.StringIO(table.to_csv()))
+    row = table.rows[0]
+    for (orientation, metric), estimate in row.cells.items():
+        name = f"{metric}_{orientation}"
+        assert float(mean[name]) == estimate.value
+        assert float(mean[f"{name}_std"]) == estimate.std
+        assert int(mean[f"{name}_count"]) == row.counts[orientation, metric]
+    assert (mean["sensor"], mean["images"]) == (row.group[0], str(row.images))
 
 
 def test_rows_are_the_oldest_first_and_what_has_no_date_last(filled):

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import csv
+import io
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from datetime import datetime
 from html import escape
 from typing import Any, ClassVar
 
@@ -14,7 +17,7 @@ from acutance.archive.counted import counted
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 
-__all__ = ["Columns", "require_library"]
+__all__ = ["Columns", "csv_text", "require_library"]
 
 _SHOWN = 20
 
@@ -33,6 +36,17 @@ def require_library(name: str, extra: str) -> None:
         raise OptionError(
             f"this needs {name}, which is not installed: pip install 'acutance[{extra}]'"
         )
+
+
+def csv_text(header: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
+    """A table as CSV: all digits of numbers, nothing for ``None``, moments in ISO 8601."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(header)
+    writer.writerows(
+        [one.isoformat() if isinstance(one, datetime) else one for one in row] for row in rows
+    )
+    return text.getvalue()
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +91,10 @@ class Columns(ShortRepr):
             listed[name] = [None if value is None else int(value) for value in listed[name]]
         for values in zip(*listed.values(), strict=True):
             yield dict(zip(listed, values, strict=True))
+
+    def to_csv(self) -> str:
+        """The text of a table with a header; empty where nothing is known, moments in ISO 8601."""
+        return csv_text(self.names, (row.values() for row in self.rows()))
 
     def to_pandas(self) -> Any:
         """The columns as a `pandas.DataFrame`.

@@ -14,7 +14,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from acutance.archive.columns import Columns
+from acutance.archive.columns import Columns, csv_text
 from acutance.archive.mean_of_images import mean_of_images
 from acutance.archive.measurements import Measurements
 from acutance.archive.natural_order import natural_key
@@ -167,6 +167,13 @@ class MeasurementTable:
             if orientation in row.images_by
         )
         return replace(self, rows=tuple(row for row in rows if not _repeats(row, rows)))
+
+    def to_csv(self) -> str:
+        """The text of a table with all digits: of each mean its deviation and count as well."""
+        ends = "", "_std", "_count"
+        names = (f"{metric}_{one}{end}" for one, metric in self.columns for end in ends)
+        header = (*self.by, "is_average", "images", "measurements", "gsd_min_m", "gsd_max_m")
+        return csv_text((*header, *names), (_csv_row(row, self.columns) for row in self.rows))
 
     def to_dict(self) -> dict[str, Any]:
         """All rows as strict JSON types."""
@@ -357,6 +364,14 @@ def _gsd_text(gsd_m: tuple[float, float] | None) -> str:
         return _NONE
     low, high = gsd_m
     return f"{low:.3g}" if high <= 1.005 * low else f"{low:.3g}–{high:.3g}"
+
+
+def _csv_row(row: TableRow, columns: tuple[tuple[str, str], ...]) -> tuple[Any, ...]:
+    gsd_m = row.gsd_m or (None, None)
+    found = (row.cells[key].to_dict() | {"n": row.counts[key]} if key in row.cells else {}
+             for key in columns)  # fmt: skip
+    cells = (one.get(name) for one in found for name in ("value", "std", "n"))
+    return (*row.group, int(row.is_average), row.images, row.measurements, *gsd_m, *cells)
 
 
 def _row_document(row: TableRow, by: tuple[str, ...]) -> dict[str, Any]:
