@@ -1,6 +1,6 @@
 """Several bands at once: the same edges in each, and the shift between them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -66,7 +66,10 @@ def found(bands):
 
 def test_one_band_is_a_scene(bands, few_forms):
     with few_forms():
-        scene, several = ac.scan_scene(bands[0]), ac.scan_bands(bands[:1])
+        whole = ac.Region.from_box(ac.Box.whole(bands[0].shape))
+        scene = ac.scan_scene(bands[0])
+        several = ac.scan_bands(bands[:1], roi=replace(whole, name="La Crau"))
+    assert several.scenes["1"].image.region == "La Crau"
     for name, column in scene.edges.columns().items():
         np.testing.assert_array_equal(column, several.scenes["1"].edges.columns()[name])
     assert several.scenes["1"].across.mtf_nyquist == scene.across.mtf_nyquist

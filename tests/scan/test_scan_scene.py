@@ -3,6 +3,7 @@
 import json
 import re
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -109,14 +110,14 @@ def test_less_ground_and_only_strong_edges_if_the_options_say_so(ideal):
 def test_a_part_of_an_image_is_scanned(ideal, few_forms):
     image, _, _ = ideal
     seen = []
+    named = replace(ac.Region.from_box(Box(100, 50, 450, 500)), name="La Crau")
     with few_forms():
-        part = ac.scan_scene(
-            image, (100, 50, 450, 500), progress=lambda done, total: seen.append((done, total))
-        )
+        part = ac.scan_scene(image, named, progress=lambda done, total: seen.append((done, total)))
     assert seen == [(1, 1)]
     assert part.edges.row.min() >= 90
     assert part.edges.col.max() <= 560
     assert part.image.roi == (100, 50, 450, 500)
+    assert part.image.region == part.to_dict()["image"]["region"] == "La Crau"
 
 
 def test_a_box_is_a_region_as_its_corners_are():

@@ -188,7 +188,8 @@ def scan_bands(
     refused: dict[str, SceneEdges] = {}
     for place, (name, one) in enumerate(images.items()):
         try:
-            scenes[name] = measured_scene(one, box, gsd, chosen, [own[place] for own in found])
+            own = [windows[place] for windows in found]
+            scenes[name] = measured_scene(one, box, gsd, chosen, own, region)
         except FewEdgesError as error:
             rejected.append(Rejected("fit", str(error), _named(name, one)))
             refused[name] = error.edges

@@ -13,7 +13,7 @@ from acutance.curves.grid import Floats
 from acutance.errors import FewEdgesError, NoDataError
 from acutance.geometry.angles import axis_difference
 from acutance.numerics.one_thread import one_thread
-from acutance.raster import Box, Gsd, Image, open_image
+from acutance.raster import Box, Gsd, Image, Region, open_image
 from acutance.scan.all_windows import Progress, part_of, scan_windows
 from acutance.scan.band_pieces import UNSEEN
 from acutance.scan.checks import check_scene
@@ -30,6 +30,7 @@ from acutance.scan.window_edges import UsedEdge, WindowEdges
 from acutance.scan.windows import windows
 from acutance.targets.options import chosen_options
 from acutance.targets.processing_checks import scene_processing_checks
+from acutance.targets.record import ImageInfo
 from acutance.targets.region import RoiLike, image_info, read_data
 
 __all__ = ["edges_of_scene", "measured_scene", "scan_scene"]
@@ -113,7 +114,8 @@ def scan_scene(
         [source], box, region, gsd=gsd, options=chosen, workers=workers, scheduler=scheduler,
         keep=keep, progress=progress,
     )  # fmt: skip
-    return measured_scene(source, box, gsd, chosen, [one for (one,) in found])
+    own = [one for (one,) in found]
+    return measured_scene(source, box, gsd, chosen, own, region)
 
 
 def edges_of_scene(image: Image) -> SceneEdges:
@@ -133,6 +135,7 @@ def measured_scene(
     gsd: Gsd | None,
     options: ScanOptions,
     found: Sequence[WindowEdges],
+    region: Region | None = None,
 ) -> SceneMeasurement:
     """The sensor under the edges of all windows of a band.
 
@@ -145,6 +148,8 @@ def measured_scene(
         Instead of the image's own.
     options : ScanOptions
     found : sequence of WindowEdges
+    region : Region, optional
+        In the part, where it is not all of the image.
 
     Raises
     ------
@@ -158,7 +163,9 @@ def measured_scene(
     if not edges.size:
         _require_data(image, box, options)
     fit = _fit(used, edges, image, box)
-    return _measurement(image, box, gsd, options, edges, fit)
+    gsd = gsd_of_part(image, box, gsd)
+    info = image_info(image, box, gsd, "" if region is None else region.name)
+    return _measurement(image, box, gsd, options, edges, fit, info)
 
 
 def _require_data(image: Image, box: Box, options: ScanOptions) -> None:
@@ -263,13 +270,12 @@ def _measurement(
     options: ScanOptions,
     edges: SceneEdges,
     fit: SensorFit,
+    info: ImageInfo,
 ) -> SceneMeasurement:
-    gsd = gsd_of_part(image, box, gsd)
     known = edges.with_objects(fit.member.mean_px, fit.member.ideal)
     field = Field(box.as_tuple(), *fit.field[:4])
     sensor = behind_objects(fit.otf, options, gsd, fit.common_errors_px2)
     transfer = Otf2d(field.mean_of(sensor), None if gsd is None else (gsd.row_m, gsd.col_m))
-    info = image_info(image, box, gsd)
     return SceneMeasurement(
         kind="scene",
         method="population",
