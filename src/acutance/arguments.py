@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import operator
 import os
 import types
 from collections.abc import Collection, Hashable, Iterable, Mapping, Sequence
@@ -30,6 +31,7 @@ __all__ = [
     "require_paths",
     "require_place",
     "require_rng",
+    "require_shape",
     "require_texts",
     "require_types",
     "require_whole",
@@ -276,6 +278,23 @@ def require_place(**values: Any) -> None:
                 f"{name} is {place!r:.80}: it has to be two numbers, (row, column)"
             ) from None
         require_finite(**{f"the row of {name}": row, f"the column of {name}": col})
+
+
+def require_shape(shape: Any) -> tuple[int, int]:
+    """Rows and columns of an image, as a caller gave them.
+
+    Raises
+    ------
+    OptionError
+        If they are no pair of whole numbers.
+    """
+    try:
+        rows, cols = map(operator.index, shape)
+    except (TypeError, ValueError):
+        raise OptionError(
+            f"shape is {shape!r:.80}: it has to be two whole numbers, (rows, columns)"
+        ) from None
+    return rows, cols
 
 
 def require_rng(rng: np.random.Generator | None, wanted: str) -> np.random.Generator:

@@ -10,10 +10,12 @@ from acutance.errors import ModelError, OptionError
 from acutance.optics import Detector, presets
 from acutance.simulate import (
     EdgeTarps,
+    LandscapeOptions,
     Noise,
     Patch,
     Point,
     PulseTarp,
+    SkyField,
     Star,
     Strip,
     add_star,
@@ -318,3 +320,20 @@ def test_shot_noise_of_negative_signal_is_refused():
     edge(SENSOR, dark=-200.0, bright=100.0, noise=Noise(read=1.0), rng=rng)
     with pytest.raises(ModelError, match=r"shot_gain is 1 and the lowest level -100"):
         bars(SENSOR, dark=1000.0, bright=-100.0, noise=Noise(shot_gain=1.0), rng=rng)
+
+
+@pytest.mark.parametrize(("make", "name"), [(SkyField, "snr"), (LandscapeOptions, "contrast")])
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        (3, "has to be two numbers, the lowest and the highest"),
+        ((1.0,), "has to be two numbers, the lowest and the highest"),
+        (("a", "b"), "has to be a number"),
+        ((5.0, 1.0), "is 5 to 1, the lowest cannot be above the highest"),
+        ((-1.0, 1.0), "has to be finite"),
+        ((1.0, float("inf")), "has to be finite"),
+    ],
+)
+def test_ranges_of_skies_and_landscapes_are_refused_in_the_same_words(make, name, wrong, words):
+    with pytest.raises(ModelError, match=words):
+        make(**{name: wrong})

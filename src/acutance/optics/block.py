@@ -21,6 +21,7 @@ __all__ = [
     "require",
     "require_axis",
     "require_count",
+    "require_range",
 ]
 
 Transfer = NDArray[Any]
@@ -87,6 +88,30 @@ def require(
             upper = "" if math.isinf(high) else f" and at most {high:g}"
             raise ModelError(
                 f"{type(block).__name__}: {name} is {value:g}, it has to be finite{lower}{upper}"
+            )
+
+
+def require_range(block: object, *, above: bool = False, **ranges: Any) -> None:
+    """Refuse what is no range of numbers from 0 on (`above`: 0 itself is refused too).
+
+    Raises
+    ------
+    ModelError
+        Names the block, the parameter, and what it has to be.
+    """
+    for name, values in ranges.items():
+        try:
+            low, high = values
+        except (TypeError, ValueError):
+            raise ModelError(
+                f"{type(block).__name__}: {name} is {values!r:.80}, it has to be two numbers, the "
+                "lowest and the highest"
+            ) from None
+        require(block, above=above, **{f"lowest {name}": low, f"highest {name}": high})
+        if low > high:
+            raise ModelError(
+                f"{type(block).__name__}: {name} is {low:g} to {high:g}, the lowest cannot be "
+                "above the highest"
             )
 
 

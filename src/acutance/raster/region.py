@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from acutance.arguments import require_all, require_kind, require_numbers
+from acutance.arguments import require_all, require_kind, require_numbers, require_shape
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
-from acutance.errors import RegionError
+from acutance.errors import OptionError, RegionError
 
 __all__ = ["Box", "Region"]
 
@@ -266,12 +266,9 @@ class Region(ShortRepr):
 def _two(shape: Any) -> tuple[int, int]:
     """Rows and columns of an image."""
     try:
-        rows, cols = map(operator.index, shape)
-    except (TypeError, ValueError):
-        raise RegionError(
-            f"shape is {shape!r:.80}: it has to be two whole numbers, (rows, columns)"
-        ) from None
-    return rows, cols
+        return require_shape(shape)
+    except OptionError as error:
+        raise RegionError(str(error)) from None
 
 
 def _outline(vertices: ArrayLike) -> Floats:

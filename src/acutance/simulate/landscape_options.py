@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, fields
 
-from acutance.arguments import require_numbers
 from acutance.errors import ModelError
-from acutance.optics.block import require
+from acutance.optics.block import require, require_range
 
 __all__ = ["LandscapeOptions", "Range"]
 
@@ -141,7 +139,7 @@ class LandscapeOptions:
             self._require_shares(names)
         for one in fields(self):
             if one.type == "Range":
-                self._require_range(one.name)
+                require_range(self, **{one.name: getattr(self, one.name)})
         for name, lowest in _SMALLEST_PX.items():
             require(self, lowest, **{name: getattr(self, name)[0]})
         require(self, 0.0, 360.0, soft_normal_deg=self.soft_normal_deg[1])
@@ -154,21 +152,6 @@ class LandscapeOptions:
             raise ModelError(
                 f"LandscapeOptions: the shares {listed} add up to {sum(shares.values()):g}, "
                 "they cannot exceed 1: lower one of them"
-            )
-
-    def _require_range(self, name: str) -> None:
-        try:
-            low, high = getattr(self, name)
-        except (TypeError, ValueError):
-            raise ModelError(
-                f"LandscapeOptions: {name} is {getattr(self, name)!r:.60}, it has to be two "
-                "numbers, lowest and highest"
-            ) from None
-        require_numbers(**{f"lowest {name}": low, f"highest {name}": high})
-        if not (0 <= low <= high < math.inf):
-            raise ModelError(
-                f"LandscapeOptions: {name} is {low:g} to {high:g}, the lowest has to be 0 or more "
-                "and not above the highest"
             )
 
     @property

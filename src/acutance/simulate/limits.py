@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import operator
-
-from acutance.errors import ModelError, OptionError
+from acutance import arguments
+from acutance.errors import ModelError
 
 __all__ = ["MAX_PIXELS", "MAX_SCENE_PIXELS", "require_shape"]
 
@@ -25,12 +24,7 @@ def require_shape(shape: tuple[int, int], most: int = MAX_PIXELS) -> None:
     ModelError
         Names the shape and the limit.
     """
-    try:
-        rows, cols = map(operator.index, shape)
-    except (TypeError, ValueError):
-        raise OptionError(
-            f"shape is {shape!r:.80}: it has to be two whole numbers, (rows, columns)"
-        ) from None
+    rows, cols = arguments.require_shape(shape)
     if min(rows, cols) < 1 or rows * cols > most:
         raise ModelError(
             f"an image of {rows} by {cols} px was requested: rows and columns have to be 1 or "

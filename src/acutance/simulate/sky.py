@@ -8,11 +8,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from acutance.arguments import require_finite, require_numbers, require_optional, require_rng
+from acutance.arguments import require_finite, require_optional, require_rng
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
-from acutance.errors import OptionError
-from acutance.optics.block import require
+from acutance.optics.block import require, require_range
 from acutance.optics.sensor import Sensor, require_sensor
 from acutance.simulate.galaxy import Galaxy
 from acutance.simulate.limits import require_shape
@@ -67,19 +66,7 @@ class SkyField:
             cosmic_rays=self.cosmic_rays, hot_pixels=self.hot_pixels,
         )  # fmt: skip
         require(self, 0.0, 1.0, bulges=self.bulges)
-        for name in ("snr", "half_light_px"):
-            try:
-                low, high = getattr(self, name)
-            except (TypeError, ValueError):
-                raise OptionError(
-                    f"SkyField: {name} is {getattr(self, name)!r:.80}: give two numbers, the least "
-                    "and the largest"
-                ) from None
-            require_numbers(**{f"the least {name}": low, f"the largest {name}": high})
-            if not 0 < low <= high < math.inf:
-                raise OptionError(
-                    f"SkyField: {name} is {low:g} to {high:g}, it has to rise from above 0"
-                )
+        require_range(self, above=True, snr=self.snr, half_light_px=self.half_light_px)
 
 
 @dataclass(frozen=True, eq=False)
