@@ -48,6 +48,24 @@ def test_every_output_is_written(acutance, files, shown, tmp_path):
     assert csv.read_text(encoding="utf-8").startswith("direction,")
 
 
+def test_one_of_a_file_of_many_is_left_out(acutance, files, tmp_path):
+    many = tmp_path / "edges.json"
+    results = [json.loads(one.read_text(encoding="utf-8")) for one in files]
+    results[1]["image"]["region"] = "north"
+    document = {"schema": "acutance/regions/1", "results": results}
+    many.write_text(json.dumps(document), encoding="utf-8")
+    result = acutance("combine", many, "--leave-out", f"{many} north", "--json")
+    assert result.exit_code == 0, result.stderr
+    parts = json.loads(result.stdout)["parts"]
+    assert [one["name"] for one in parts] == [f"{many} 1", f"{many} 3"]
+    refused = acutance("combine", many, "--leave-out", "south")
+    assert refused.exit_code == 2
+    words = f"none is called south, so it cannot be left out: there are {many} 1, {many} north"
+    assert words in " ".join(refused.stderr.split())
+    with pytest.raises(ac.OptionError, match="leave_out is 'north': give a list"):
+        ac.combine(results, leave_out="north")
+
+
 def test_strict_asks_for_three_directions(acutance, files):
     assert acutance("combine", *files[:2], "--strict").exit_code == 3
     assert acutance("combine", *files[:2], "--strict", "--limit", "directions=2").exit_code == 0

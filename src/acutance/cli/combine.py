@@ -22,7 +22,8 @@ EXAMPLE = (
     "  acutance edge site.tif --roi 34,30,33,61 --json > across.json\n"
     "  acutance edge site.tif --roi 122,31,58,29 --json > along.json\n"
     "  acutance points site.tif --roi 10,160,120,50 --json > mirrors.json\n"
-    "  acutance combine across.json along.json mirrors.json --report sensor.html"
+    "  acutance combine across.json along.json mirrors.json --report sensor.html\n"
+    '  acutance combine edges.json --leave-out "edges.json north"'
 )
 
 
@@ -51,6 +52,14 @@ def combine(
             metavar="FILE...", help="Measurements as JSON, written by a measuring command."
         ),
     ],
+    leave_out: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME",
+            help="Leave out the measurement that has this name in the result, also one of a file "
+            "of many; may be repeated.",
+        ),
+    ] = None,
     gsd: GsdOption = None,
     detector: Annotated[
         str,
@@ -71,7 +80,7 @@ def combine(
 
     options = CombineOptions(detector_px=_parse_detector(detector), limits=wanted.limits)
     measurement = combine_measurements(
-        documents, names=files, gsd_m=parse_gsd(gsd), options=options
+        documents, names=files, leave_out=leave_out or (), gsd_m=parse_gsd(gsd), options=options
     )
     outputs.deliver(Shown(measurement))
 

@@ -18,7 +18,13 @@ from acutance.targets.combine.checks import check_combination, count_directions,
 from acutance.targets.combine.combined_measurement import CombinedMeasurement, CombinedPart
 from acutance.targets.combine.curves import ChiSquare, OtfSamples
 from acutance.targets.combine.fit import combine_curves
-from acutance.targets.combine.inputs import Combinable, MeasuredInput, common_flight, read_inputs
+from acutance.targets.combine.inputs import (
+    Combinable,
+    MeasuredInput,
+    common_flight,
+    read_inputs,
+    without,
+)
 from acutance.targets.combine.options import CombineOptions
 from acutance.targets.combine.pixel_size import common_gsd, require_one_product, without_gsd
 from acutance.targets.options import chosen_options
@@ -34,6 +40,7 @@ def combine(
     measurements: Sequence[Combinable],
     *,
     names: Sequence[str] | None = None,
+    leave_out: Sequence[str] = (),
     gsd_m: float | Gsd | None = None,
     options: CombineOptions | None = None,
 ) -> CombinedMeasurement:
@@ -46,6 +53,9 @@ def combine(
         normals.
     names : sequence of str, optional
         What to call them.
+    leave_out : sequence of str, optional
+        Those that do not count, by the names they have in the result: of a document of many
+        measurements one need not be used.
     gsd_m : float or Gsd, optional
         Ground sampling distance in metres, instead of that of the measurements.
     options : CombineOptions, optional
@@ -59,7 +69,7 @@ def combine(
     ------
     OptionError
         If there is only one measurement or one direction, or they do not belong together: other
-        pixels, the same result twice, a ratio instead of an MTF.
+        pixels, the same result twice, a ratio instead of an MTF; or none has a name of `leave_out`.
 
     Examples
     --------
@@ -68,7 +78,7 @@ def combine(
     >>> print(both.across.mtf_nyquist, both.chi_square.p_value)  # doctest: +SKIP
     """
     chosen = chosen_options(options, CombineOptions)
-    inputs = read_inputs(measurements, names)
+    inputs = without(read_inputs(measurements, names), leave_out)
     _require_two(inputs)
     gsd = Gsd.given(gsd_m)
     unknown = without_gsd(inputs) if gsd is None else ()

@@ -29,6 +29,7 @@ __all__ = [
     "direction_in_words",
     "read_inputs",
     "records_of",
+    "without",
 ]
 
 Combinable = Measurement | Record | TargetResult[Measurement] | Mapping[str, Any]
@@ -130,6 +131,24 @@ def read_inputs(
             for record, own in zip(records, called, strict=True)
         ]
     return _distinctly_named(found)
+
+
+def without(inputs: Sequence[MeasuredInput], leave_out: Sequence[str]) -> list[MeasuredInput]:
+    """Inputs without those of some names.
+
+    Raises
+    ------
+    OptionError
+        If one of the names is that of none; it lists those that there are.
+    """
+    known = [one.name for one in inputs]
+    unknown = [name for name in require_texts("leave_out", leave_out) if name not in known]
+    if unknown:
+        raise OptionError(
+            f"none is called {', '.join(unknown)}, so it cannot be left out: there are "
+            f"{', '.join(known)}"
+        )
+    return [one for one in inputs if one.name not in leave_out]
 
 
 def records_of(one: Combinable, origin: str) -> tuple[Record, ...]:
