@@ -206,6 +206,13 @@ class WhitenedCurves:
         is_lit = np.array([one.likelihood is not None for one in seen], bool)
         return np.cumsum(sizes) - sizes, sizes, is_lit
 
+    @property
+    def spectra(self) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
+        """Of the curves that have values: where those of each begin, and the last ones end, and
+        whether it is a spectrum of unknown light."""
+        first, _, is_lit = self._segments
+        return np.append(first, self.values.size), is_lit
+
     def sums(self, values: Floats) -> Floats:
         """Sums of whitened values (..., size) over every curve that has some, (..., curves)."""
         return np.asarray(np.add.reduceat(values, self._segments[0], axis=-1))

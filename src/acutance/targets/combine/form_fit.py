@@ -220,9 +220,12 @@ class _NearForms:
 
     @cached_property
     def slopes(self) -> Floats:
-        """Derivatives of the whitened OTFs by the parameters, (b, p, size)."""
-        slopes = self.products.slopes(self.x, self.misfits.data.plane, self.factors)
-        return self.curves.of(slopes)
+        """Derivatives of the whitened OTFs by the parameters, (b, p, size); 0 where a form has
+        fewer."""
+        slopes = self.products.own_slopes(self.x, self.misfits.data.plane, self.factors)
+        found = np.zeros((*self.x.shape, self.misfits.data.values.size))
+        self.curves.put(slopes, self.products.places, found)
+        return found
 
     def some(self, kept: Places) -> _NearForms:
         """Those at places (k,) among them; what is known of them is not worked out again."""

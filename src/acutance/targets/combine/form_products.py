@@ -141,10 +141,27 @@ class FormProducts:
             found[use.factor, use.sensor] = use.term.otf(use.of(p), plane)
         return found
 
+    @cached_property
+    def places(self) -> tuple[Places, Places]:
+        """Sensor and parameter of each of the r parameters that the sensors have, (r,) each."""
+        own = np.arange(int(self.counts.max())) < self.counts[:, None]
+        sensor, parameter = np.nonzero(own)
+        return sensor, parameter
+
     def slopes(self, p: Floats, plane: Plane, factors: Complexes) -> Complexes:
         """Derivatives of the OTFs by the parameters, (f, p, n), the factors being known."""
-        others = _products_of_others(factors)
         found = np.zeros((*p.shape, factors.shape[2]), complex)
+        found[self.places] = self.own_slopes(p, plane, factors)
+        return found
+
+    def own_slopes(self, p: Floats, plane: Plane, factors: Complexes) -> Complexes:
+        """The same by the parameters at `places` alone, (r, n).
+
+        Of the forms of a scene half of the parameters of the longest are none of the others.
+        """
+        others = _products_of_others(factors)
+        begin = np.cumsum(self.counts) - self.counts
+        found = np.empty((int(self.counts.sum()), factors.shape[2]), complex)
         for use in self._uses:
             term, own = use.term, use.of(p)
             if term.slopes is None:
@@ -152,7 +169,7 @@ class FormProducts:
             else:
                 slopes = term.slopes(own, plane)
             slopes = others[use.factor, use.sensor][:, None] * slopes
-            found[use.sensor[:, None], use.parameters] = slopes
+            found[begin[use.sensor, None] + use.parameters] = slopes
         return found
 
 

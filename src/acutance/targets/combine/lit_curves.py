@@ -18,11 +18,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
+from acutance.numerics.compiled import compiled
 from acutance.targets.combine.curves import WhitenedCurves
 
 __all__ = ["LitCurves"]
 
 Complexes = NDArray[np.complex128]
+Places = NDArray[np.intp]
 
 _NO_LIGHT = 1e-30
 
@@ -73,12 +75,46 @@ class LitCurves:
         along = self.data.of_spectra(self.data.sums(whole * whitened) / square, 0.0)
         return np.asarray(whitened - whole * along)
 
+    def put(self, values: Complexes, places: tuple[Places, Places], found: Floats) -> None:
+        """Put changes of several OTFs (r, n) at their places (OTF, which) of (b, p, size).
+
+        Whitened, less what light makes up for, as `of` has them; in one walk over them.
+        """
+        starts, is_lit = self.data.spectra
+        _put(
+            self.data.of(values), *places, self.light, self._whole, self._square, starts, is_lit,
+            found,
+        )  # fmt: skip
+
     def some(self, kept: NDArray[np.intp]) -> LitCurves:
         """Those about some of several OTFs; what is known of them is not worked out again."""
         known = {name: values[kept] for name, values in vars(self).items() if name != "data"}
         found = LitCurves(self.data, known["otf"])
         vars(found).update(known)
         return found
+
+
+@compiled
+def _put(
+    whitened: Floats, owner: Places, number: Places, light: Floats, whole: Floats, square: Floats,
+    starts: Places, is_lit: NDArray[np.bool_], found: Floats,
+) -> None:  # fmt: skip
+    for row in range(owner.size):
+        one = owner[row]
+        out = found[one, number[row]]
+        for curve in range(is_lit.size):
+            first, end = starts[curve], starts[curve + 1]
+            if not is_lit[curve]:
+                for i in range(first, end):
+                    out[i] = whitened[row, i]
+                continue
+            along = 0.0
+            for i in range(first, end):
+                along += whole[one, i] * whitened[row, i]
+            own = light[one, first]
+            along *= own / square[one, curve]
+            for i in range(first, end):
+                out[i] = own * whitened[row, i] - along * whole[one, i]
 
 
 def _beside(own: Floats, others: Floats) -> Floats:
