@@ -54,12 +54,32 @@ def kernel_taps() -> Floats:
 
 def kernel_modes(mean: MeanOtf, u_cpp: Floats, v_cpp: Floats) -> Complexes:
     """OTF of the blur times every direction of taps, at frequencies (n,), (n, k)."""
-    across, along = turns(u_cpp), turns(v_cpp)
-    taps = kernel_taps()
-    size, directions = across.shape[1], taps.shape[2]
-    by_column = (along @ taps.reshape(size, -1)).reshape(-1, size, directions)
-    found = np.einsum("nj,njk->nk", across, by_column)
-    return np.asarray(blur_before(mean).otf(u_cpp, v_cpp)[:, None] * found)
+    found = _of_taps(u_cpp, v_cpp)
+    found *= blur_before(mean).otf(u_cpp, v_cpp)[:, None]
+    return found
+
+
+def _of_taps(u_cpp: Floats, v_cpp: Floats) -> Complexes:
+    """OTF of every direction of taps alone, (n, k).
+
+    Along first: a table of frequencies has few, each with many across.
+    """
+    taps, across = kernel_taps(), turns(u_cpp)
+    size, directions = taps.shape[1:]
+    v, row = np.unique(v_cpp, return_inverse=True)
+    is_table = v.size <= u_cpp.size // 4
+    by_column = (turns(v if is_table else v_cpp) @ taps.reshape(size, -1)).reshape(
+        -1, size, directions
+    )
+    if not is_table:
+        return np.asarray(np.einsum("nj,njk->nk", across, by_column))
+    found = np.empty((u_cpp.size, directions), complex)
+    ends = np.cumsum(np.bincount(row))[:-1]
+    for own, taps_across in zip(
+        np.split(np.argsort(row, kind="stable"), ends), by_column, strict=True
+    ):
+        found[own] = across[own] @ taps_across
+    return found
 
 
 def turns(freq_cpp: Floats) -> Complexes:

@@ -110,14 +110,18 @@ class ProcessModes:
 
     def otf_modes(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """All states at frequencies across and along, (n, r)."""
-        freq, angle = np.hypot(u_cpp, v_cpp), np.arctan2(v_cpp, u_cpp)
-        parts: list[Complexes] = []
+        angle = np.arctan2(v_cpp, u_cpp)
+        # A table of frequencies has every distance from zero several times.
+        freq, where = np.unique(np.hypot(u_cpp, v_cpp), return_inverse=True)
+        found = np.zeros((u_cpp.size, self.blocks().size), complex)
+        end = 0
         for order in range(self.orders + 1):
-            radial = self.radial(order, freq) * (1j if order % 2 else 1.0)
-            parts.append(radial * np.cos(order * angle)[:, None])
-            if order:
-                parts.append(radial * np.sin(order * angle)[:, None])
-        return np.asarray(np.hstack(parts), complex)
+            radial = self.radial(order, freq)[where]
+            seen = found.imag if order % 2 else found.real
+            for wave in (np.cos, np.sin) if order else (np.cos,):
+                first, end = end, end + radial.shape[1]
+                np.multiply(radial, wave(order * angle)[:, None], out=seen[:, first:end])
+        return found
 
 
 def _states(process: Process) -> tuple[float, float, float]:

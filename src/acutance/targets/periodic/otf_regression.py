@@ -54,9 +54,11 @@ class Regression(NamedTuple):
 
 def weighted_normal(design: Floats, value: Floats, weight: Floats) -> Normal:
     """Normal equations of pixels (n,) in the columns of a design (n, m), with weights (n,)."""
-    weighted = design * weight[:, None]
-    data = float((weight * value) @ value)
-    return Normal(weighted.T @ design, weighted.T @ value, data, float(np.sum(weight)))
+    # Of a matrix by itself, transposed, half of the products are the others.
+    root = np.sqrt(weight)
+    weighted, values = design * root[:, None], value * root
+    gram, projection = weighted.T @ weighted, weighted.T @ values
+    return Normal(gram, projection, float(values @ values), float(np.sum(weight)))
 
 
 def mean_variance(normal: Normal, few: int) -> float:
