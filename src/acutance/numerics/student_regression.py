@@ -116,26 +116,27 @@ def _solve(factor: Floats, vector: Floats) -> None:
 
 @compiled
 def _information(columns: Floats, weight: Floats, precision: Floats, matrix: Floats) -> None:
-    """``columns.T @ diag(weight) @ columns + diag(precision)``, its lower triangle."""
-    rows, size = columns.shape
+    """``columns @ diag(weight) @ columns.T + diag(precision)``, its lower triangle."""
+    size, rows = columns.shape
+    weighted = np.empty(rows)
     for i in range(size):
+        for row in range(rows):
+            weighted[row] = weight[row] * columns[i, row]
         for k in range(i + 1):
-            matrix[i, k] = 0.0
-        matrix[i, i] = precision[i]
-    for row in range(rows):
-        for i in range(size):
-            weighted = weight[row] * columns[row, i]
-            for k in range(i + 1):
-                matrix[i, k] += weighted * columns[row, k]
+            total = 0.0
+            for row in range(rows):
+                total += weighted[row] * columns[k, row]
+            matrix[i, k] = total
+        matrix[i, i] += precision[i]
 
 
 @compiled
 def _residuals(columns: Floats, value: Floats, beta: Floats, residual: Floats) -> None:
-    for row in range(value.size):
-        total = value[row]
-        for i in range(beta.size):
-            total -= columns[row, i] * beta[i]
-        residual[row] = total
+    residual[:] = value
+    for i in range(beta.size):
+        amount = beta[i]
+        for row in range(value.size):
+            residual[row] -= amount * columns[i, row]
 
 
 @compiled
@@ -145,22 +146,24 @@ def _log_evidence(
 ) -> float:  # fmt: skip
     """Log evidence at one scatter, a density of its logarithm.
 
-    `beta` is the start of the mode and becomes it; `matrix` becomes the factor of the information.
+    Columns are rows here, (p, n): loops over the images are vectorised. `beta` is the start of the
+    mode and becomes it; `matrix` becomes the factor of the information.
     """
-    rows, size = columns.shape
+    size, rows = columns.shape
     scatter = math.exp(log_scatter)
     scale = scatter**2 + variance
     weight, residual, right = np.empty(rows), np.empty(rows), np.empty(size)
+    pull = np.empty(rows)
     for _ in range(_MAX_PASSES):
         _residuals(columns, value, beta, residual)
-        right[:] = 0.0
         for row in range(rows):
-            one = (degrees + 1) / (degrees * scale[row] + residual[row] ** 2)
-            weight[row] = one
-            for i in range(size):
-                right[i] += one * columns[row, i] * residual[row]
+            weight[row] = (degrees + 1) / (degrees * scale[row] + residual[row] ** 2)
+            pull[row] = weight[row] * residual[row]
         for i in range(size):
-            right[i] -= precision[i] * beta[i]
+            total = -precision[i] * beta[i]
+            for row in range(rows):
+                total += columns[i, row] * pull[row]
+            right[i] = total
         _information(columns, weight, precision, matrix)
         if not _factorize(matrix):
             return -np.inf
@@ -234,17 +237,17 @@ def _step_evidences(
     columns: Floats, value: Floats, variance: Floats, precision: Floats, step_precision: float,
     degrees: float, scatter_prior: float, start: float, steps: NDArray[np.int64],
 ) -> Floats:  # fmt: skip
-    rows, fixed = columns.shape
+    fixed, rows = columns.shape
     count = steps.shape[1]
     size = fixed + count
-    full, prior = np.zeros((rows, size)), np.full(size, step_precision)
-    full[:, :fixed], prior[:fixed] = columns, precision
+    full, prior = np.zeros((size, rows)), np.full(size, step_precision)
+    full[:fixed], prior[:fixed] = columns, precision
     matrix, found = np.empty((size, size)), np.empty(steps.shape[0])
     first = np.zeros(size)
     for one in range(steps.shape[0]):
         for k in range(count):
             for row in range(rows):
-                full[row, fixed + k] = 1.0 if row >= steps[one, k] else 0.0
+                full[fixed + k, row] = 1.0 if row >= steps[one, k] else 0.0
         beta = first.copy()
         at, log_evidence, curvature = _peak(
             full, value, variance, prior, degrees, scatter_prior, start, beta, matrix
@@ -270,7 +273,7 @@ def step_evidences(model: StudentModel, steps: NDArray[np.int64], step_precision
     """
     return np.asarray(
         _step_evidences(
-            np.ascontiguousarray(model.columns), model.value, model.variance, model.precision,
+            np.ascontiguousarray(model.columns.T), model.value, model.variance, model.precision,
             step_precision, model.degrees, model.scatter_prior, model.log_scatter,
             np.ascontiguousarray(steps),
         )
@@ -282,7 +285,7 @@ def _scatter_nodes(
     columns: Floats, value: Floats, variance: Floats, precision: Floats, degrees: float,
     scatter_prior: float, start: float, places: Floats,
 ) -> tuple[float, Floats, Floats, Floats, Floats]:  # fmt: skip
-    size = columns.shape[1]
+    size = columns.shape[0]
     beta, matrix = np.zeros(size), np.empty((size, size))
     peak, _, curvature = _peak(
         columns, value, variance, precision, degrees, scatter_prior, start, beta, matrix
@@ -316,7 +319,7 @@ def scatter_nodes(model: StudentModel, places: Floats) -> ScatterNodes:
         Evenly spaced, about the likeliest scatter, in standard deviations of its logarithm.
     """
     log_width, log_share, scatter, mode, covariance = _scatter_nodes(
-        np.ascontiguousarray(model.columns), model.value, model.variance, model.precision,
+        np.ascontiguousarray(model.columns.T), model.value, model.variance, model.precision,
         model.degrees, model.scatter_prior, model.log_scatter, places,
     )  # fmt: skip
     highest = log_share.max()
