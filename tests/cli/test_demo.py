@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 import acutance as ac
-from acutance.archive.trends import Event
 from acutance.cli.demo_folder import FILES, demo_folder, file_of
-from acutance.cli.demo_year import BEGIN, IMAGES, REFOCUS, true_nyquist
+from acutance.cli.demo_year import BEGIN, IMAGES, REFOCUS, measure_year, true_nyquist
 from acutance.errors import OptionError
 from acutance.targets.kinds import KINDS
 
@@ -20,10 +19,23 @@ PAGES = (*TARGETS, "combined", "landscape")
 
 
 @pytest.fixture(scope="module")
-def folder(acutance, tmp_path_factory):
+def years():
+    """Every year that was measured, with its trends."""
+    return []
+
+
+@pytest.fixture(scope="module")
+def folder(acutance, tmp_path_factory, years):
     """The demonstration, once for all tests."""
     place = tmp_path_factory.mktemp("out") / "demo"
-    result = acutance("demo", place)
+
+    def measured(*words):
+        years.append(measure_year(*words))
+        return years[-1]
+
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr("acutance.cli.demo.measure_year", measured)
+        result = acutance("demo", place)
     assert result.exit_code == 0, result.stderr
     assert result.stdout.strip() == f"open {place / 'index.html'}"
     return place
@@ -91,18 +103,18 @@ def test_a_landscape_is_scanned_and_compared_with_its_truth(folder):
         assert f"truth {row['mtf_nyquist']['truth']:.4f}" in section
 
 
-def test_a_year_is_measured_as_a_batch_and_its_loss_and_refocusing_are_found(folder):
+def test_a_year_is_measured_as_a_batch_and_its_loss_and_refocusing_are_found(folder, years):
     with ac.Archive(folder / "year.db", read_only=True) as archive:
         assert len(archive.measurements()) == 4 * IMAGES
         assert not len(archive.rejected())
-        for direction in ("across", "along"):
-            trend = archive.trend(
-                "mtf_nyquist", orientation=direction, events=[Event(REFOCUS, "refocus")]
-            )
-            for day in (BEGIN, REFOCUS - timedelta(days=1), REFOCUS + timedelta(days=1)):
-                found = trend.at(day)
-                assert abs(found.value - true_nyquist(day)) < 3.5 * found.std
-            assert trend.rate_per_year.interval(0.95)[1] < 0 < trend.events[0].size.interval()[0]
+    (year,) = years
+    assert set(year.trends) == {"across", "along"}
+    for trend in year.trends.values():
+        assert trend.images.size == IMAGES
+        for day in (BEGIN, REFOCUS - timedelta(days=1), REFOCUS + timedelta(days=1)):
+            found = trend.at(day)
+            assert abs(found.value - true_nyquist(day)) < 3.5 * found.std
+        assert trend.rate_per_year.interval(0.95)[1] < 0 < trend.events[0].size.interval()[0]
     page = (folder / "year.html").read_text(encoding="utf-8")
     assert page.count(".tif</td>") == IMAGES
     assert "refocus of 2026-09-01" in page

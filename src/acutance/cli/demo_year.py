@@ -70,7 +70,7 @@ def measure_year(folder: Path, seed: int) -> SimulatedYear:
     from acutance.archive import Archive
     from acutance.archive.trends import Event
     from acutance.batch import run_batch
-    from acutance.report.archive import sensor_page
+    from acutance.report.archive.sensor_page import sensor_page_and_states
 
     images = folder / "images"
     images.mkdir(exist_ok=True)
@@ -85,11 +85,8 @@ def measure_year(folder: Path, seed: int) -> SimulatedYear:
     run_batch(images=str(images / "*.tif"), targets=targets, archive=place, workers=1)
     event = Event(REFOCUS, "refocus")
     with Archive(place) as archive:
-        page = sensor_page(archive, SENSOR, events=[event])
-        trends = {
-            direction: archive.trend("mtf_nyquist", orientation=direction, events=[event])
-            for direction in ("across", "along")
-        }
+        page, states = sensor_page_and_states(archive, SENSOR, events=[event])
+    trends = {state.name: state.trend for state in states if state.trend is not None}
     (folder / f"{YEAR}.html").write_text(page, encoding="utf-8")
     return SimulatedYear(place, trends)
 

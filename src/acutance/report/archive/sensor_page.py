@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from acutance.archive.requirement_answers import Answer, SpecificationCheck
     from acutance.archive.trends import Event
 
-__all__ = ["sensor_page"]
+__all__ = ["sensor_page", "sensor_page_and_states"]
 
 Word = Literal["good", "usable", "doubtful", "invalid"]
 _ANSWERS: dict[str, Word] = {"met": "good", "not met": "invalid", "cannot be told yet": "doubtful"}
@@ -83,6 +83,23 @@ def sensor_page(
     NothingSelectedError
         If there is no measurement of the sensor with such a verdict, or with a value of the metric.
     """
+    return sensor_page_and_states(
+        archive, sensor, metric=metric, specification=specification, events=events,
+        verdict=verdict, command=command,
+    )[0]  # fmt: skip
+
+
+def sensor_page_and_states(
+    archive: Archive,
+    sensor: str,
+    *,
+    metric: str = "mtf_nyquist",
+    specification: str | os.PathLike[str] | None = None,
+    events: Sequence[Event] = (),
+    verdict: str = "usable",
+    command: str | None = None,
+) -> tuple[str, list[SeriesState]]:
+    """The page, and the states it has, whose trends take most of its time."""
     if metric not in METRIC_WORDS:
         raise OptionError(f"there is no metric {metric!r}, only {', '.join(METRIC_WORDS)}")
     every, rejected = archive.measurements(sensor=sensor), archive.rejected(sensor=sensor)
@@ -121,7 +138,8 @@ def sensor_page(
         *_list_sections(every, rejected, command),
     )
     title = sensor or "Sensor not named"
-    return render_page(title, "What its measurements say", content, _facts(every, rejected, rows))
+    facts = _facts(every, rejected, rows)
+    return render_page(title, "What its measurements say", content, facts), states
 
 
 def _facts(every: Measurements, rejected: Rejections, used: Measurements) -> dict[str, str]:
