@@ -360,7 +360,7 @@ def test_an_overshoot_is_stated_in_per_cent_as_well(acutance, folder):
     for text in ("4%", "0.04"):
         out = folder / "over.json"
         result = acutance(
-            "restore", "design", folder / "across.json", folder / "along.json", "--size", 9,
+            "restore", "design", folder / "across.json", folder / "along.json", "--size", 5,
             "--overshoot", text, "--out", out,
         )  # fmt: skip
         assert result.exit_code == 0, result.stderr
