@@ -53,7 +53,7 @@ def test_about_another_sensor_it_is_larger(part):
 def shifted():
     rng = np.random.default_rng(5)
     options = bare_ground(density_per_mpx=90)
-    return simulate.landscape(SHIFTED, shape=(1000, 1000), snr=100, options=options, rng=rng)[0]
+    return simulate.landscape(SHIFTED, shape=(760, 760), snr=100, options=options, rng=rng)[0]
 
 
 def check_of(scene):

@@ -19,8 +19,15 @@ def half(softness_px, seed):
     return simulate.landscape(SENSOR, shape=(900, 450), snr=100, options=options, rng=rng)[0]
 
 
-def scanned(left_px, right_px):
-    return ac.scan_scene(np.hstack([half(left_px, 1), half(right_px, 2)]))
+@pytest.fixture(scope="module")
+def scanned(few_forms):
+    """A scan of two halves, and what its parts say; not how well forms describe the sensor."""
+
+    def scan(left_px, right_px):
+        with few_forms():
+            return ac.scan_scene(np.hstack([half(left_px, 1), half(right_px, 2)]))
+
+    return scan
 
 
 def check_of(scene):
@@ -43,7 +50,7 @@ def test_parts_have_as_many_edges_each():
 
 
 @pytest.fixture(scope="module")
-def alike():
+def alike(scanned):
     return scanned(0.0, 0.0)
 
 
@@ -54,7 +61,7 @@ def test_parts_that_agree_add_nothing(alike):
     assert alike.details.parts.chi_square.expected == 24
 
 
-def test_a_part_of_soft_objects_is_a_term_of_the_budget(alike):
+def test_a_part_of_soft_objects_is_a_term_of_the_budget(alike, scanned):
     scene = scanned(0.45, 0.0)
     found = check_of(scene)
     assert not found.passed
@@ -82,12 +89,13 @@ def smeared(axis, seed):
     return simulate.landscape(sensor, shape=(300, 300), snr=100, options=options, rng=rng)[0]
 
 
-def test_parts_that_differ_in_the_softer_direction_widen_both(alike):
+def test_parts_that_differ_in_the_softer_direction_widen_both(alike, few_forms):
     # No smooth surface over the field follows this; that of a checkerboard some do.
     across, along = "across", "along"
     axes = ((across, along, along), (along, across, across), (across, across, along))
     rows = [[smeared(axes[i][j], 20 + 3 * i + j) for j in range(3)] for i in range(3)]
-    scene = ac.scan_scene(np.block(rows))
+    with few_forms():
+        scene = ac.scan_scene(np.block(rows))
     parts = scene.details.parts
     assert parts.chi_square.value > 3 * parts.chi_square.expected
     assert parts.errors_px2[1] > max(0.001, 3 * alike.details.parts.errors_px2[1])
