@@ -135,6 +135,20 @@ def test_clipped_sides_fail_the_saturation_check():
     assert "saturation" in failed(ac.measure_edge(eight_bit))
 
 
+@pytest.mark.parametrize("noise", [0.1, 0.2])
+def test_a_side_of_one_value_is_not_clipped_where_noise_is_finer_than_the_steps(noise):
+    found = []
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        dark = 60 + rng.uniform(-0.3, 0.3)
+        image, _ = edge(
+            reference_systems()["gaussian"], angle_deg=float(rng.uniform(4, 30)), shape=(40, 40),
+            dark=dark, bright=dark + rng.uniform(20, 40), noise=Noise(read=noise), rng=rng,
+        )  # fmt: skip
+        found.append(failed(ac.measure_edge(np.round(image).astype(np.uint8))))
+    assert not any("saturation" in one for one in found)
+
+
 def test_the_correlated_noise_of_a_resampled_image_is_found_and_widens_the_intervals():
     from acutance.simulate import Regrid
 

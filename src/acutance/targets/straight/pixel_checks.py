@@ -8,7 +8,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.numerics.clipping import NOT_CLIPPED, at_limit_share, piled_up_share
-from acutance.numerics.noise import median, outlier_share, smallest_step
+from acutance.numerics.noise import median, outlier_share, rounding_std, smallest_step
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.question import PLACES
 from acutance.targets.region import RegionPixels
@@ -30,6 +30,7 @@ from acutance.targets.straight.tuned import (
     OUTLIER_SIGMAS,
     QUIET_SIDE,
     QUIET_TRANSITION,
+    ROUNDED_NOISE,
 )
 
 __all__ = [
@@ -62,7 +63,7 @@ def saturation(
         if side.size < MIN_PILED_PIXELS:
             continue
         piled = piled_up_share(side)
-        if piled > share and not _quiet(data, side):
+        if piled > share and not _quiet(data, values, side):
             share, where = piled, f" {place}"
     found = f"{100 * share:.1f} % of the pixels{where} are clipped at an end of the scale"
     return answer("saturation", share, found, limits)
@@ -81,15 +82,26 @@ def _clipped_share(region: RegionPixels, values: Floats, data: CheckData) -> flo
     return share
 
 
-def _quiet(data: CheckData, side: Floats) -> bool:
-    """Whether a side has no noise that clipping could cut, and the transition none either."""
+def _quiet(data: CheckData, values: Floats, side: Floats) -> bool:
+    """Whether a side has no noise that clipping could cut, and the transition none either.
+
+    Of noise finer than the steps of the numbers a side is all one value, clipped or not. Where it
+    is clipped, the transition is no longer that of a sensor, and more is left of it than rounding.
+    """
     contrast = abs(data.fit.bright - data.fit.dark)
+    if _transition_noise(data) * contrast < ROUNDED_NOISE * rounding_std(values):
+        return True
     return float(np.std(side)) < QUIET_SIDE * contrast and _is_noise_free(data)
 
 
 def _is_noise_free(data: CheckData) -> bool:
     """Whether the transition has no noise, as of a drawn image."""
-    return float(np.std(data.residual[data.outside < 1.0])) < QUIET_TRANSITION
+    return _transition_noise(data) < QUIET_TRANSITION
+
+
+def _transition_noise(data: CheckData) -> float:
+    """Standard deviation of what the fit leaves within a pixel of the target, of the contrast."""
+    return float(np.std(data.residual[data.outside < 1.0]))
 
 
 def quantisation(region: RegionPixels, values: Floats, data: CheckData, limits: Limits) -> Check:

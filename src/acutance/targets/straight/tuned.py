@@ -66,6 +66,7 @@ __all__ = [
     "REPEATED_SIGMAS",
     "RIM_ODDS",
     "RIM_STD",
+    "ROUNDED_NOISE",
     "STRUCTURE_OUTLIER_SIGMAS",
     "STRUCTURE_SIGMAS",
     "TAIL_LOG_AMPLITUDE",
@@ -217,6 +218,8 @@ Sentinel-2 band MTF at Nyquist was off by 3 deviations from that of a pair of ba
 QUIET_SIDE: Final = 1e-4
 QUIET_TRANSITION: Final = 2e-3
 """Noise of a side and of the transition below which an image has none: nothing to clip."""
+ROUNDED_NOISE: Final = 1.25
+"""Noise over that of rounding below which an image has hardly any other: .2 steps add a fifth."""
 MAX_FINE_STEP: Final = 1e-4
 """Steps of the image's numbers that curves do not resolve."""
 APERTURE_TAIL_PX: Final = 0.1
