@@ -14,6 +14,7 @@ import numpy as np
 from trials import command, publish, table, work_through
 
 import acutance as ac
+from acutance.scan.checks import judged_edges
 
 SNR = (25.0, 60.0, 150.0)
 SIZE_PX = 800
@@ -23,7 +24,7 @@ DECIMATED_SNR = 60.0
 
 @dataclass(frozen=True)
 class Trusted:
-    """Edges of one scene that were measured, and those of them that are good or usable."""
+    """Edges of one scene that were measured and are not faint; those that are good or usable."""
 
     measured: int
     used: int
@@ -53,8 +54,7 @@ def scanned(job: tuple[str, int]) -> Trusted:
         edges, verdict = scene.edges, scene.verdict.word
     except ac.FewEdgesError as error:
         edges, verdict = error.edges, "refused"
-    measured = int(np.sum(edges.verdict != "rejected"))
-    return Trusted(measured, int(edges.used.sum()), verdict)
+    return Trusted(judged_edges(edges), int(edges.used.sum()), verdict)
 
 
 def main() -> None:

@@ -26,8 +26,9 @@ from acutance.targets.processing_checks import SCENE_PROCESSING_CHECKS, scene_pr
 from acutance.targets.record import ImageInfo
 from acutance.targets.region import stated_gsd
 from acutance.targets.slices import SLICE_FREQ_CPP
+from acutance.targets.straight.tuned import MIN_TRUSTED_SNR
 
-__all__ = ["SCENE_CHECKS", "check_scene"]
+__all__ = ["SCENE_CHECKS", "check_scene", "judged_edges"]
 
 SCENE_CHECKS = (
     "edges_used", "trusted_share", "scene_directions", "ideal_share", "ideal_borders",
@@ -119,13 +120,22 @@ def check_scene(
     )  # fmt: skip
 
 
+def judged_edges(edges: SceneEdges) -> int:
+    """How many edges were measured that agree with a sensor or contradict one.
+
+    Faint ones do neither: they are doubtful whatever they are.
+    """
+    faint = ~edges.used & (edges.snr < MIN_TRUSTED_SNR)
+    return int(np.sum((edges.verdict != "rejected") & ~faint))
+
+
 def _trusted_share(edges: SceneEdges, used: int, limits: Limits) -> Check:
     """Share of the used edges, the good and usable ones, among all that were measured."""
-    measured = int(np.sum(edges.verdict != "rejected"))
+    measured = judged_edges(edges)
     share = used / max(measured, 1)
     found = (
-        f"of the {measured} edges that could be measured {used} are good or usable, "
-        f"{100 * share:.0f} %"
+        f"of the {measured} edges that could be measured, faint ones apart, {used} are good or "
+        f"usable, {100 * share:.0f} %"
     )
     return answer("trusted_share", share, found, limits)
 

@@ -15,7 +15,8 @@ SCENE_QUESTIONS: Final = {
         "scenes and combine them", severity="note",
     ),
     "trusted_share": Question(
-        "Which share of the edges that can be measured is good or usable?", ">=", 0.2,
+        "Which share of the edges that can be measured, faint ones apart, is good or usable?",
+        ">=", 0.2,
         "where nearly all edges contradict a sensor, those that pass may do so by chance: the "
         "image may be decimated, drawn or a mosaic; scan the original",
     ),
