@@ -81,6 +81,23 @@ def test_the_covariance_of_two_estimates_is_not_guessed(operation) -> None:
         operation(Estimate(1.0, 0.1), Estimate(2.0, 0.1))
 
 
+def test_a_truth_is_a_number_as_any_other() -> None:
+    rer, truth = Estimate(0.5, 0.1, lowest=0.0), Estimate(0.25)
+    assert rer - truth == rer - 0.25 == Estimate(0.25, 0.1, lowest=-0.25)
+    assert truth - rer == 0.25 - rer
+    assert truth + rer == rer + truth == rer + 0.25
+    assert truth * rer == rer * truth == rer * 0.25
+    assert rer / truth == rer / 0.25
+    assert truth - Estimate(0.5) == Estimate(-0.25)
+    assert math.isnan((Estimate(0.5, math.nan) - truth).std)
+
+
+@pytest.mark.parametrize("other", [1, 0.25, Estimate(0.25)])
+def test_an_estimate_is_no_denominator(other) -> None:
+    with pytest.raises(TypeError, match=r"not linear in it: use float\(\) of the estimate"):
+        other / Estimate(0.5, 0.1)
+
+
 @pytest.mark.parametrize("other", ["0.5", None, [1.0], np.ones(2), 1j])
 def test_an_estimate_adds_and_compares_to_nothing_but_numbers(other) -> None:
     rer = Estimate(1.0, 0.1)

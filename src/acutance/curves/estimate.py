@@ -58,8 +58,9 @@ class Estimate:
 
     It adds to and multiplies with plain numbers, and compares to them and to other estimates by
     value (``<``, ``<=``, ``>``, ``>=``). Equality is that of all fields, so an estimate never
-    equals a plain number. The sum or product of two estimates is refused: their covariance is
-    known to the curves they were read from, not to them.
+    equals a plain number. The sum or product of two estimates is refused, as their covariance is
+    known to the curves they were read from, not to them; one without a deviation, a truth, is a
+    number like any other.
 
     Parameters
     ----------
@@ -216,26 +217,47 @@ class Estimate:
     def __ge__(self, other: float | Estimate) -> bool:
         return self.value >= float(other) if _is_number(other) else NotImplemented
 
-    def __add__(self, other: float) -> Estimate:
-        return self._linear(1.0, other) if _is_plain(other, "sum") else NotImplemented
+    def __add__(self, other: float | Estimate) -> Estimate:
+        return self._plus(1.0, other) if _is_one_exact(self, other, "sum") else NotImplemented
 
-    def __sub__(self, other: float) -> Estimate:
-        return self + -float(other) if _is_plain(other, "difference") else NotImplemented
+    def __sub__(self, other: float | Estimate) -> Estimate:
+        one_exact = _is_one_exact(self, other, "difference")
+        return self._plus(-1.0, other) if one_exact else NotImplemented
 
     def __rsub__(self, other: float) -> Estimate:
-        return self._linear(-1.0, other) if _is_plain(other, "difference") else NotImplemented
+        return -self + other
 
-    def __mul__(self, other: float) -> Estimate:
-        return self._linear(other, 0.0) if _is_plain(other, "product") else NotImplemented
+    def __mul__(self, other: float | Estimate) -> Estimate:
+        if not _is_one_exact(self, other, "product"):
+            return NotImplemented
+        if isinstance(other, Estimate) and other.std != 0:
+            return other._linear(self.value, 0.0)
+        return self._linear(float(other), 0.0)
 
-    def __truediv__(self, other: float) -> Estimate:
-        return self._linear(1 / float(other), 0.0) if _is_plain(other, "ratio") else NotImplemented
+    def __truediv__(self, other: float | Estimate) -> Estimate:
+        if not _is_one_exact(self, other, "ratio"):
+            return NotImplemented
+        if isinstance(other, Estimate) and other.std != 0:
+            return self.__rtruediv__(other)
+        return self._linear(1 / float(other), 0.0)
+
+    def __rtruediv__(self, other: object) -> Estimate:
+        raise TypeError(
+            "a number over an estimate has no standard deviation of its own, as it is not linear "
+            "in it: use float() of the estimate"
+        )
 
     def __neg__(self) -> Estimate:
         return self._linear(-1.0, 0.0)
 
     __radd__ = __add__
     __rmul__ = __mul__
+
+    def _plus(self, sign: float, other: float | Estimate) -> Estimate:
+        """``self + sign * other``, of which one at most has a deviation."""
+        if isinstance(other, Estimate) and other.std != 0:
+            return other._linear(sign, self.value)
+        return self._linear(1.0, sign * float(other))
 
     def _linear(self, slope: float, offset: float) -> Estimate:
         """``slope * self + offset``; a negative slope exchanges the bounds."""
@@ -271,17 +293,17 @@ def _is_number(other: object) -> bool:
     return isinstance(other, Real | Estimate)
 
 
-def _is_plain(other: object, operation: str) -> bool:
-    """Whether `other` is a number without a deviation of its own.
+def _is_one_exact(one: Estimate, other: object, operation: str) -> bool:
+    """Whether `other` is a number, and it or the estimate has no deviation: a truth has none.
 
     Raises
     ------
     TypeError
-        If it is an estimate.
+        If both have one.
     """
-    if isinstance(other, Estimate):
+    if isinstance(other, Estimate) and one.std != 0 and other.std != 0:
         raise TypeError(
             f"the {operation} of two estimates has no standard deviation as long as their "
             "covariance is not known: use float() of one of them, or of both"
         )
-    return isinstance(other, Real)
+    return _is_number(other)
