@@ -74,9 +74,23 @@ def test_square_wave_and_fan():
     found = measure_star(image, cycles=CYCLES, options=StarOptions("square", 200.0, 1200.0, 1.0))
     error = np.array([found.mean_mtf(f).value for f in FREQ]) - truth.mtf_mean(FREQ)
     assert np.sqrt(np.mean(error**2)) < 0.005
-    assert found.star.sweep_deg == pytest.approx(100.0, abs=25)
+    assert found.star.sweep_deg == pytest.approx(100.0, abs=4)
     # Spokes at 30..130 degrees have normals at 120..220, which is -60..40.
     assert found.mtf_at(80.0)(0.4).std > 1.5 * found.mtf_at(-10.0)(0.4).std
+
+
+@pytest.mark.parametrize(("start_deg", "sweep_deg"), [(10.0, 120.0), (-151.0, 200.0), (4.0, 336.0)])
+def test_a_fan_ends_where_its_spokes_do(start_deg, sweep_deg):
+    """Ends anywhere in a sector of two cycles, and a gap of less than one."""
+    image, truth = star_scene(wave="square", start_deg=start_deg, sweep_deg=sweep_deg)
+    found = measure_star(image, cycles=CYCLES, options=StarOptions("square", 200.0, 1200.0, 1.0))
+    assert found.star.sweep_deg == pytest.approx(sweep_deg, abs=4)
+    middle_deg = found.star.first_deg + 0.5 * (found.star.sweep_deg - sweep_deg)
+    assert abs((middle_deg - start_deg + 180) % 360 - 180) < 4
+    assert found.trusted
+    own, true = found.across.mtf_nyquist, truth.mtf_toward(0.0, 0.5)
+    assert abs(own.value - true) < 3 * own.std
+    assert own.std < 0.02
 
 
 def test_the_mean_of_a_fan_is_over_the_directions_in_which_it_shows_nyquist():

@@ -15,6 +15,10 @@ from acutance.targets.periodic.star_rings import members_of
 __all__ = ["extent_of"]
 
 _SECTOR_CYCLES = 2.0
+_WHOLE = 0.9
+"""Share of the amplitude from which on a sector is whole."""
+_NO_GAP_CYCLES = 0.25
+"""Ends of a fan that are closer are none."""
 
 
 def extent_of(smooth: Floats, usable: Flags, star: SiemensStar, inner: float) -> SiemensStar:
@@ -37,10 +41,43 @@ def extent_of(smooth: Floats, usable: Flags, star: SiemensStar, inner: float) ->
             "that is no star; choose a region around it, or give its centre"
         )
     first, count = _longest_run(spans)
+    weakest = int(np.nanargmin(own))
+    if count == sectors and own[weakest] < _WHOLE * level:
+        # Less than a sector may be missing.
+        first, count = weakest + 1, sectors - 1
     kept = np.isin(sector, (first + np.arange(count)) % sectors)
     rim = _rim(radius[kept], wave[kept], value[kept], inner)
-    sweep = 360.0 if count == sectors else count * 360.0 / sectors
-    return replace(star, rim_px=rim, first_deg=first * 360.0 / sectors - 180.0, sweep_deg=sweep)
+    if count == sectors:
+        return replace(star, rim_px=rim, first_deg=-180.0, sweep_deg=360.0)
+    own = (radius > inner) & (radius < rim)
+    begin, half = first * width - math.pi, 0.5 * count * width
+    off = np.mod(angle[own] - begin - half + math.pi, 2 * math.pi) - math.pi
+    before, after = (_end(side * off, wave[own], value[own], half, width) for side in (-1.0, 1.0))
+    if before + after > 2 * math.pi - _NO_GAP_CYCLES / _SECTOR_CYCLES * width:
+        return replace(star, rim_px=rim, first_deg=-180.0, sweep_deg=360.0)
+    first_deg = math.degrees(math.remainder(begin + half - before, 2 * math.pi))
+    return replace(star, rim_px=rim, first_deg=first_deg, sweep_deg=math.degrees(before + after))
+
+
+def _end(off: Floats, wave: Floats, value: Floats, coarse: float, width: float) -> float:
+    """How far from its middle a fan goes on one side, in radians.
+
+    Up to there pixels follow the wave as they do further in, beyond they have one level: where that
+    leaves the smallest sum of squares, within a sector of the `coarse` end.
+    """
+    inside = (off > max(coarse - 3 * width, -coarse)) & (off < max(coarse - width, 0.0))
+    near = np.flatnonzero((off >= coarse - width) & (off < min(coarse + width, math.pi)))
+    if not near.size:
+        return coarse
+    near = near[np.argsort(off[near])]
+    design = np.stack([np.ones(wave.size), wave], axis=1)
+    fit, *_ = np.linalg.lstsq(design[inside], value[inside], rcond=None)
+    left = np.append(0.0, np.cumsum((value[near] - design[near] @ fit) ** 2))
+    beyond = value[near][::-1] - float(np.mean(value[near]))
+    count = np.arange(1, beyond.size + 1)
+    level = np.append(0.0, np.cumsum(beyond**2) - np.cumsum(beyond) ** 2 / count)[::-1]
+    followed = int(np.argmin(left + level))
+    return float(off[near[max(followed - 1, 0)]])
 
 
 def _slope(wave: Floats, value: Floats) -> float:

@@ -146,16 +146,17 @@ def _residual_rings(
 def _spoke_power(standard: Floats, angle: Floats, star: SiemensStar) -> tuple[float, float, int]:
     """Mean power of the spokes in a ring's standardised residuals, noise taken off.
 
-    Also chi-square of the spokes less its expectation, and that.
+    Also chi-square of the spokes less its expectation, and that. What pixels of a fan hardly show
+    of some directions is taken to be as much as in the others: of the noise in them nothing else
+    would be left.
     """
     turns = np.multiply.outer(angle, _TURNS)
     around = np.hstack([np.ones((angle.size, 1)), np.cos(turns), np.sin(turns)])
     spokes = np.cos(star.cycles * angle + star.alpha_rad)
-    left, size, right = np.linalg.svd(spokes[:, None] * around, full_matrices=False)
+    left, size, _ = np.linalg.svd(spokes[:, None] * around, full_matrices=False)
     kept = size > _MIN_SINGULAR * size[0]
-    seen, back = (left.T @ standard)[kept], right[kept].T / size[kept]
+    seen = (left.T @ standard)[kept]
+    excess = float(seen @ seen) - seen.size
     # Mean squares of one, and of sines and cosines, over directions.
-    weight = np.full(around.shape[1], 0.5)
-    weight[0] = 1.0
-    power = weight @ ((back @ seen) ** 2 - np.sum(back**2, axis=1))
-    return float(power), float(seen @ seen) - seen.size, seen.size
+    whole = 1.0 + 0.5 * (around.shape[1] - 1)
+    return whole * excess / float(size[kept] @ size[kept]), excess, seen.size
