@@ -63,7 +63,7 @@ def test_the_page_of_a_sensor_has_no_requirement_of_another(
     path = tmp_path / "spec.toml"
     path.write_text('[[requirement]]\nmetric = "mtf_nyquist"\nminimum = 0.0123\nsensor = "K3"\n')
     module = sys.modules["acutance.report.archive.sensor_page"]
-    drawn: list[float | None] = []
+    drawn: list[list[float]] = []
     plate = module.trend_plate
     monkeypatch.setattr(
         module, "trend_plate", lambda trend, limit: drawn.append(limit) or plate(trend, limit)
@@ -72,4 +72,4 @@ def test_the_page_of_a_sensor_has_no_requirement_of_another(
     assert "The specification asks nothing of sensor" in page
     assert "0.0123" not in page
     assert "0.0123" in sensor_page(kept, "K3", specification=path)
-    assert drawn == [None, 0.0123]
+    assert drawn == [[], [0.0123]]

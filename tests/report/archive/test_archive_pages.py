@@ -7,6 +7,7 @@ import re
 import tomllib
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -26,7 +27,7 @@ from acutance.report.archive.sensor_tables import (
     specification_table,
     state_table,
 )
-from acutance.report.archive.trend_page import trend_verdict
+from acutance.report.archive.trend_page import trend_plate, trend_verdict
 from acutance.report.archive.wording import percent, signed, with_minus
 from acutance.report.labels import MISSING, word_estimate
 from acutance.targets import Rejected
@@ -161,6 +162,37 @@ def test_steps_events_and_limits_are_drawn_where_they_are():
     assert 0.25 in levels
 
 
+def test_limits_are_labelled_beside_the_axes_and_far_ones_do_not_stretch_them():
+    trend = fit_trend(series_of())
+    own = trend_figure(trend).axes[0].get_ylim()
+    figure = trend_figure(trend, limit=(0.27, 0.09, 0.271, 0.8, 0.27))
+    figure.draw_without_rendering()
+    axes = figure.axes[0]
+    assert axes.get_ylim() == own
+    levels = [one.get_ydata()[0] for one in axes.get_lines() if one.get_linestyle() == "--"]
+    assert levels == [0.27, 0.271]
+    labels = [one for one in axes.texts if "limit" in one.get_text()]
+    assert [one.get_text().strip() for one in labels] == [
+        "↓ limit 0.09", "limit 0.27", "limit 0.271", "↑ limit 0.8",
+    ]  # fmt: skip
+    boxes = [one.get_window_extent() for one in labels]
+    assert all(low.y1 <= high.y0 for low, high in pairwise(boxes))
+    legend = axes.get_legend().get_window_extent()
+    for box in boxes:
+        assert axes.bbox.x1 <= box.x0
+        assert box.x1 < legend.x0
+    assert axes.bbox.y0 - 10 < boxes[0].y0 < boxes[-1].y1 < axes.bbox.y1 + 10
+
+
+def test_many_limits_at_the_upper_end_come_down_without_touching():
+    trend = fit_trend(series_of())
+    figure = trend_figure(trend, limit=(0.7, 0.8, 0.9))
+    figure.draw_without_rendering()
+    boxes = [one.get_window_extent() for one in figure.axes[0].texts if "↑" in one.get_text()]
+    assert len(boxes) == 3
+    assert all(low.y1 <= high.y0 for low, high in pairwise(boxes))
+
+
 @pytest.mark.usefixtures("undrawn")
 def test_the_page_of_a_sensor_has_its_state_changes_and_images(archive):
     page = words_of(sensor_page(archive, "QB02"))
@@ -173,6 +205,23 @@ def test_the_page_of_a_sensor_has_its_state_changes_and_images(archive):
     assert "a cloud <b> lies" not in sensor_page(archive, "QB02")
     assert "tarp 0" in page
     assert "By target, across" in page
+
+
+def test_all_limits_of_the_metric_that_apply_to_the_sensor_are_drawn(
+    archive, tmp_path, monkeypatch
+):
+    place = tmp_path / "two.toml"
+    other = '[[requirement]]\nmetric = "rer"\nminimum = 0.5\n'
+    place.write_text(SPEC + other, encoding="utf-8")
+    drawn = []
+
+    def plate(trend, limit):
+        drawn.append((trend.metric, limit))
+        return trend_plate(trend, limit)
+
+    monkeypatch.setattr("acutance.report.archive.sensor_page.trend_plate", plate)
+    sensor_page(archive, "QB02", specification=place)
+    assert drawn == [("mtf_nyquist", [0.2, 0.9])]
 
 
 @pytest.mark.usefixtures("undrawn")

@@ -203,20 +203,21 @@ def _trend_sections(
     states: Sequence[SeriesState], check: SpecificationCheck | None, sensor: str
 ) -> list[Section]:
     plates = tuple(
-        trend_plate(one.trend, _limit_of(one, check, sensor))
+        trend_plate(one.trend, _limits_of(one, check, sensor))
         for one in states
         if one.trend is not None
     )
     return [Section("Through time", plates=plates)] if plates else []
 
 
-def _limit_of(state: SeriesState, check: SpecificationCheck | None, sensor: str) -> float | None:
-    """The limit that a requirement sets for a series."""
+def _limits_of(state: SeriesState, check: SpecificationCheck | None, sensor: str) -> list[float]:
+    """The limits that requirements set for a series."""
     own = ", ".join(filter(None, (sensor or NO_SENSOR, state.name)))
-    for answer in check.answers if check else ():
-        if answer.requirement.metric == state.metric and answer.what == own:
-            return answer.requirement.limit
-    return None
+    return [
+        answer.requirement.limit
+        for answer in (check.answers if check else ())
+        if answer.requirement.metric == state.metric and answer.what == own
+    ]
 
 
 def _curve_sections(rows: Measurements) -> list[Section]:

@@ -1,12 +1,14 @@
-"""A trend drawn: images, the sensor's mean with its bands, steps, events, limit."""
+"""A trend drawn: images, the sensor's mean with its bands, steps, events, limits."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from acutance.curves.grid import Floats
 from acutance.curves.metric_words import METRIC_WORDS
 from acutance.report.archive.dates import axis_days, date_axis, day_on_axis
 from acutance.report.archive.wording import step_words
@@ -29,16 +31,24 @@ _MANY = 150
 _ROOM = 0.12
 _REACH = 6.0
 """Images further from the median than so many of its absolute deviations lie on the rim."""
+_LIMIT_REACH = 1.0
+"""The axis is stretched to limits that are nearer to what is drawn than its range times this."""
+_LABEL_PT = 8.5
+_LABEL_STEP = 0.045
+"""Labels of limits are apart by this part of the axis."""
+_LEGEND_BESIDE = 1.1
+"""Where the legend begins, in widths of the axes, with the labels of limits before it."""
 
 
-def trend_figure(trend: Trend, *, limit: float | None = None) -> Figure:
+def trend_figure(trend: Trend, *, limit: float | Sequence[float] | None = None) -> Figure:
     """A trend on a page of its own.
 
     Parameters
     ----------
     trend : Trend
-    limit : float, optional
-        Drawn as a line, in the units of the metric.
+    limit : float or sequence of float, optional
+        Drawn as lines, in the units of the metric; those far from the trend are named at the end of
+        the axis.
     """
     with styled():
         figure = new_page(_WIDTH_IN, _HEIGHT_IN)
@@ -46,32 +56,32 @@ def trend_figure(trend: Trend, *, limit: float | None = None) -> Figure:
     return figure
 
 
-def draw_trend(axes: Axes, trend: Trend, *, limit: float | None = None) -> None:
+def draw_trend(axes: Axes, trend: Trend, *, limit: float | Sequence[float] | None = None) -> None:
     """Draw a trend on axes.
 
     Parameters
     ----------
     axes : Axes
     trend : Trend
-    limit : float, optional
+    limit : float or sequence of float, optional
     """
+    limits = sorted(set(np.atleast_1d([] if limit is None else limit).tolist()))
     years = trend.images.when
     last = float(years[-1])
     ahead = last + max(_AHEAD * (last - float(years[0])), 1 / 24)
     bands = trend.bands(np.union1d(np.linspace(years[0], ahead, _DATES), [last]))
     _draw_bands(axes, bands, last)
-    low, high = _range(trend, bands, limit)
+    low, high = _range(trend, bands, limits)
     _draw_images(axes, trend, low, high)
-    if limit is not None:
-        _draw_limit(axes, limit, ahead)
     axes.set_ylim(low, high)
+    _draw_limits(axes, limits)
     axes.set_xlim(axis_days(years[0] - 0.02 * (ahead - years[0])), axis_days(ahead))
     _draw_changes(axes, trend)
     date_axis(axes)
     words = METRIC_WORDS[trend.metric]
     axes.set_ylabel(words.label_with_unit)
     axes.set_title(f"{words.label}{f', {trend.name}' if trend.name else ''}")
-    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    axes.legend(loc="upper left", bbox_to_anchor=(_LEGEND_BESIDE if limits else 1.0, 1.0))
 
 
 def _draw_bands(axes: Axes, bands: TrendBands, last: float) -> None:
@@ -89,8 +99,8 @@ def _draw_bands(axes: Axes, bands: TrendBands, last: float) -> None:
     axes.plot(day[later], bands.mean[later], color=BLUE, linestyle=":", label="if it goes on")
 
 
-def _range(trend: Trend, bands: TrendBands, limit: float | None) -> tuple[float, float]:
-    """Ends of the vertical axis: a monstrous image does not flatten all others."""
+def _range(trend: Trend, bands: TrendBands, limits: Sequence[float]) -> tuple[float, float]:
+    """Ends of the vertical axis: a monstrous image or a far limit does not flatten all others."""
     value = trend.images.value
     middle = float(np.median(value))
     spread = _REACH * float(np.median(np.abs(value - middle))) or 0.05 * abs(middle) or 1.0
@@ -100,8 +110,9 @@ def _range(trend: Trend, bands: TrendBands, limit: float | None) -> tuple[float,
         near.max(),
         *(one for side in bands.band95 for one in (side.min(), side.max())),
     ]
-    if limit is not None:
-        ends.append(limit)
+    reach = _LIMIT_REACH * (max(ends) - min(ends))
+    low, high = min(ends) - reach, max(ends) + reach
+    ends += [one for one in limits if low <= one <= high]
     room = _ROOM * (max(ends) - min(ends)) or 0.05 * abs(middle) or 1.0
     return float(min(ends) - room), float(max(ends) + room)
 
@@ -139,12 +150,28 @@ def are_bad(trend: Trend) -> NDArray[np.bool_]:
     return np.isin(trend.images.value, [day.value for day in trend.bad_days])
 
 
-def _draw_limit(axes: Axes, limit: float, ahead: float) -> None:
-    axes.axhline(limit, color=VERMILION, linewidth=1.2, linestyle="--")
-    axes.annotate(
-        f"limit {limit:g}", (axis_days(ahead), limit), xytext=(-4, 3), ha="right",
-        textcoords="offset points", fontsize=8.5, color=VERMILION,
-    )  # fmt: skip
+def _draw_limits(axes: Axes, limits: Sequence[float]) -> None:
+    """Lines with their labels beside the axes, where nothing else is drawn."""
+    low, high = axes.get_ylim()
+    for limit in limits:
+        if low <= limit <= high:
+            axes.axhline(limit, color=VERMILION, linewidth=1.2, linestyle="--")
+    marks = ["↓ " if one < low else "↑ " if one > high else "" for one in limits]
+    shares = np.clip((np.array(limits) - low) / (high - low), 0.0, 1.0)
+    for limit, mark, place in zip(limits, marks, _apart(shares), strict=True):
+        axes.text(
+            1.0, place, f" {mark}limit {limit:g}", transform=axes.transAxes, ha="left",
+            va="center", fontsize=_LABEL_PT, color=VERMILION,
+        )  # fmt: skip
+
+
+def _apart(shares: Floats) -> Floats:
+    """Rising places on the axis, moved until none is nearer to the next than a line of text."""
+    steps = _LABEL_STEP * np.arange(shares.size)
+    upwards = np.maximum.accumulate(shares - steps) + steps
+    # Those that were moved beyond the top come down, with those below them.
+    downwards = np.minimum.accumulate((np.minimum(upwards, 1.0) - steps)[::-1])[::-1]
+    return np.asarray(downwards + steps)
 
 
 def _draw_changes(axes: Axes, trend: Trend) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -67,7 +68,7 @@ def trend_page(trend: Trend, *, limit: float | None = None, command: str | None 
     return render_page(f"Trend of {METRIC_WORDS[trend.metric].label}", trend.name, content, facts)
 
 
-def trend_plate(trend: Trend, limit: float | None = None) -> Plate:
+def trend_plate(trend: Trend, limit: float | Sequence[float] | None = None) -> Plate:
     """The drawing with its caption."""
     return Plate.of_figure(
         trend_figure(trend, limit=limit),
@@ -77,7 +78,7 @@ def trend_plate(trend: Trend, limit: float | None = None) -> Plate:
         "little weight. Blue: the sensor's mean with its 50 and 95 % bands; "
         "dotted: if the drift goes on. Grey: between these lie 95 % of single images. Amber: a "
         "step at a date that was not stated, and the days between which it lies. Green: stated "
-        "events.",
+        "events. Dashed: limits; those with an arrow lie outside the drawing.",
         wide=True,
     )
 
