@@ -1,5 +1,7 @@
 """Whatever a filter, and what applies and proves it, is handed in wrongly is refused in words."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -67,3 +69,40 @@ def test_a_filter_is_read_and_asked_in_words(designed, wrong):
     if not isinstance(wrong, int | np.ndarray):
         with pytest.raises(ac.OptionError, match=r"u_cpp is .*: it has to hold numbers"):
             designed.otf(wrong, 0.0)
+
+
+def test_a_filter_that_was_written_is_read_as_it_was(designed, tmp_path):
+    place = tmp_path / "filter.json"
+    place.write_text("older", encoding="utf-8")
+    designed.write(place)
+    again = ac.RestorationFilter.read(place)
+    np.testing.assert_array_equal(again.kernel, designed.kernel)
+    assert again.summary() == designed.summary()
+    assert again.to_dict() == json.loads(place.read_text(encoding="utf-8"))
+    assert [one.name for one in tmp_path.iterdir()] == ["filter.json"]
+
+
+def test_a_filter_that_cannot_be_written_leaves_what_was_there(designed, tmp_path, monkeypatch):
+    place = tmp_path / "filter.json"
+    place.write_text("older", encoding="utf-8")
+
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patched:
+        patched.setattr("os.replace", full)
+        with pytest.raises(ac.OptionError, match=r"filter.json cannot be written \(No space"):
+            designed.write(place)
+    assert place.read_text(encoding="utf-8") == "older"
+    assert [one.name for one in tmp_path.iterdir()] == ["filter.json"]
+    with pytest.raises(ac.OptionError, match="cannot be written"):
+        designed.write(tmp_path / "missing" / "filter.json")
+    with pytest.raises(ac.OptionError, match=r"path is 3.*: give the path of a file"):
+        designed.write(3)
+
+
+def test_a_missing_filter_names_both_ways_of_writing_one(tmp_path):
+    with pytest.raises(ac.OptionError) as caught:
+        ac.RestorationFilter.read(tmp_path / "no.json")
+    assert "acutance restore design" in str(caught.value)
+    assert "RestorationFilter.write(path)" in str(caught.value)

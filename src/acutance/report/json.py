@@ -15,7 +15,7 @@ from acutance.report.check_words import common_verdict
 from acutance.report.comparison import Comparison, Result, as_result
 from acutance.report.requirements import Required, with_requirements
 from acutance.targets import Rejected, TargetResult
-from acutance.targets.record import strict_json
+from acutance.targets.json_text import json_text
 
 if TYPE_CHECKING:
     from acutance.curves import Response
@@ -129,29 +129,3 @@ def _rejected_documents(rejected: Sequence[Rejected]) -> list[dict[str, Any]]:
     return [
         {"stage": one.stage, "reason": one.reason, "values": dict(one.values)} for one in rejected
     ]
-
-
-def json_text(document: Mapping[str, Any]) -> str:
-    """Strict JSON, indented by one: what is not a finite number becomes null.
-
-    Lists of numbers stay on one line each, so that a reader can scroll.
-    """
-    return _render(strict_json(document), 0)
-
-
-def _render(value: Any, depth: int) -> str:
-    nested = isinstance(value, list) and any(isinstance(item, dict | list) for item in value)
-    if not value or not (isinstance(value, dict) or nested):
-        return json.dumps(value, ensure_ascii=False, allow_nan=False)
-    inner, outer = " " * (depth + 1), " " * depth
-    if isinstance(value, dict):
-        items = [
-            f"{json.dumps(key, ensure_ascii=False)}: {_render(item, depth + 1)}"
-            for key, item in value.items()
-        ]
-        opening, closing = "{", "}"
-    else:
-        items = [_render(item, depth + 1) for item in value]
-        opening, closing = "[", "]"
-    body = f",\n{inner}".join(items)
-    return f"{opening}\n{inner}{body}\n{outer}{closing}"

@@ -18,10 +18,12 @@ from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
+from acutance.execution.partial_folder import whole_file
 from acutance.raster.image import AlongTrack
 from acutance.restoration.filtered_otf import kernel_otf
 from acutance.targets.check import VerdictWord
 from acutance.targets.document_fields import refuse_damaged, require_document
+from acutance.targets.json_text import json_text
 from acutance.targets.recorded_direction import RecordedDirection
 
 __all__ = ["SCHEMA", "RestorationFilter", "Sharpness", "require_filter"]
@@ -32,6 +34,7 @@ _REQUIRED = (
     "schema", "kernel", "method", "snr", "noise_gain", "before", "after", "niirs_change", "trade",
     "aliased_share", "image", "sources", "notes",
 )  # fmt: skip
+_WRITERS = "'acutance restore design' or RestorationFilter.write(path)"
 _SUM_TOLERANCE = 1e-6
 MAX_SIZE = 63
 
@@ -88,9 +91,9 @@ class RestorationFilter(ShortRepr):
 
     def __post_init__(self) -> None:
         document = self.document
-        advice = "write one with 'acutance restore design', or with to_dict()"
+        advice = f"write one with {_WRITERS}"
         require_document(document, SCHEMA, _REQUIRED, name="the filter", advice=advice)
-        with refuse_damaged("the filter", "give one that 'acutance restore design' wrote"):
+        with refuse_damaged("the filter", f"give one that {_WRITERS} wrote"):
             _require_kernel(self.kernel, float(document["noise_gain"]))
             _ = self.before.summary(), self.after.summary(), self.niirs_change, self.gsd_m
 
@@ -119,8 +122,8 @@ class RestorationFilter(ShortRepr):
             document = json.loads(Path(path).read_text(encoding="utf-8-sig"))
         except OSError as error:
             raise OptionError(
-                f"{path} cannot be read ({error.strerror or error}): give a file that 'acutance "
-                "restore design' wrote"
+                f"{path} cannot be read ({error.strerror or error}): give a file that "
+                f"{_WRITERS} wrote"
             ) from error
         except ValueError as error:
             raise OptionError(f"{path} holds no JSON ({error}): it was cut or changed") from error
@@ -128,6 +131,25 @@ class RestorationFilter(ShortRepr):
             return cls.from_dict(document)
         except OptionError as error:
             raise OptionError(f"{path}: {error}") from error
+
+    def write(self, path: str | Path) -> None:
+        """Write the document to a file, whole or not at all; `read` gives the filter back.
+
+        Raises
+        ------
+        OptionError
+            If the file cannot be written.
+        """
+        require_path(path=path)
+        text = json_text(self.to_dict())
+        try:
+            with whole_file(path) as part:
+                part.write_text(text, encoding="utf-8")
+        except (OSError, ValueError) as error:
+            reason = getattr(error, "strerror", None) or str(error)
+            raise OptionError(
+                f"{path} cannot be written ({reason}): choose another path"
+            ) from error
 
     def to_dict(self) -> dict[str, Any]:
         """The document; nothing is lost by `from_dict`."""
