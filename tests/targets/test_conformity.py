@@ -7,6 +7,7 @@ import pytest
 
 import acutance as ac
 from acutance import optics, simulate
+from acutance.curves.metric_words import METRIC_WORDS
 from acutance.targets import ToleranceLimit
 from acutance.targets.conformity import conformity_word, written_probability
 from acutance.targets.uncertainty_budget import systematic_share
@@ -174,11 +175,32 @@ def test_probabilities_are_true():
         ("along.mtf_nyquist >= 0", "mtf_nyquist is never below 0"),
         ("fwhm_m <= -1", "fwhm_m is never below 0"),
         ("", "not of the form"),
+        ("rer > 0.4", r"rer > 0.4.*of a number with a deviation > asks the same as >="),
+        ("mtf50 >= 0.2", "asks for 'mtf50'.*did you mean mtf50_cpp"),
+        ("mtf at nyquist >= 0.2", "asks for 'mtf at nyquist'.*did you mean mtf_nyquist"),
+        ("mtf_niquist >= 0.2", "did you mean mtf_nyquist"),
+        ("MTF at  Nyquist >= x", "'MTF at  Nyquist >= x' is not of the form"),
     ],
 )
 def test_texts_that_state_no_limit_are_refused(text, said):
     with pytest.raises(ac.OptionError, match=said):
         ToleranceLimit.of(text)
+
+
+@pytest.mark.parametrize("name", ac.curves.METRICS)
+def test_every_number_may_be_named_as_reports_print_it(name):
+    words = METRIC_WORDS[name]
+    for label in (words.label, words.label_with_unit):
+        assert ToleranceLimit.of(f"{label} >= 0.2") == ToleranceLimit(name, ">=", 0.2)
+    said = ToleranceLimit.of(f" along . {words.label}  < = 0.2 ")
+    assert said == ToleranceLimit(name, "<=", 0.2, "along")
+
+
+@pytest.mark.parametrize("name", ["contrast", "mtf"])
+def test_a_name_that_resembles_none_or_several_is_not_guessed(name):
+    with pytest.raises(ac.OptionError) as caught:
+        ToleranceLimit.of(f"{name} >= 0.1")
+    assert "did you mean" not in str(caught.value)
 
 
 def test_a_number_that_may_be_negative_has_a_limit_of_zero():

@@ -18,6 +18,7 @@ from acutance.arguments import require_all
 from acutance.curves import METRICS, Estimate
 from acutance.curves.estimate import normal_quantile
 from acutance.curves.metric_bounds import limit_fault
+from acutance.curves.metric_names import likely_metric, metric_of
 from acutance.errors import OptionError
 from acutance.targets.recorded_direction import RecordedDirection
 from acutance.targets.target_result import TargetResult
@@ -56,7 +57,8 @@ Numbers = Mapping[str, Mapping[str, Estimate | None]]
 Parts = Mapping[str, "Sequence[Measurement | Record]"]
 """The measurements that the numbers of a direction are of."""
 
-_FORM = re.compile(r"(?:(across|along)\.)?(\w+)(>=|<=)([^<>=]+)")
+_FORM = re.compile(r"(?:(across|along)\s*\.\s*)?([^<>=.]+)([<>])\s*=([^<>=]+)")
+_STRICT = re.compile(r"[<>](?!\s*=)")
 _MOST: Final = 1000
 """More measurements than this are no answer."""
 _NAMED: Final = 0.1
@@ -99,9 +101,11 @@ class ToleranceLimit:
 
     def __post_init__(self) -> None:
         if self.metric not in METRICS:
+            likely = likely_metric(self.metric) if isinstance(self.metric, str) else None
+            meant = "" if likely is None else f"; did you mean {likely}?"
             raise OptionError(
                 f"a requirement asks for {self.metric!r}, which is no number of a measurement, "
-                f"only {', '.join(METRICS)}"
+                f"only {', '.join(METRICS)}{meant}"
             )
         if self.sense not in (">=", "<=") or not math.isfinite(self.limit):
             raise OptionError(f"the requirement {self} has no limit: give a number after >= or <=")
@@ -119,6 +123,8 @@ class ToleranceLimit:
     def of(cls, text: str) -> ToleranceLimit:
         """The limit that a text states: "mtf_nyquist >= 0.09", "along.fwhm_m <= 1.5".
 
+        A number may be named as reports print it, too: "MTF at Nyquist >= 0.09", "FWHM <= 1.5".
+
         Raises
         ------
         OptionError
@@ -129,16 +135,22 @@ class ToleranceLimit:
                 f"the requirement is {text!r:.80}, no text: write 'mtf_nyquist >= 0.09', or give a "
                 "ToleranceLimit"
             )
-        found = _FORM.fullmatch("".join(text.split()))
+        found = _FORM.fullmatch(" ".join(text.split()))
         try:
             orientation, metric, sense, number = found.groups()  # type: ignore[union-attr]
-            limit = float(number)
+            limit = float("".join(number.split()))
         except (AttributeError, ValueError):
+            strict = (
+                " (of a number with a deviation > asks the same as >=, and < as <=)"
+                if _STRICT.search(text)
+                else ""
+            )
             raise OptionError(
-                f"the requirement {text!r} is not of the form NUMBER>=LIMIT or NUMBER<=LIMIT: "
-                "write mtf_nyquist>=0.09, or along.fwhm_m<=1.5 for one direction"
+                f"the requirement {text!r} is not of the form NUMBER>=LIMIT or NUMBER<=LIMIT"
+                f"{strict}: write mtf_nyquist>=0.09, or along.fwhm_m<=1.5 for one direction"
             ) from None
-        return cls(metric, sense, limit, orientation)  # type: ignore[arg-type]
+        metric = metric_of(metric.strip())
+        return cls(metric, f"{sense}=", limit, orientation)  # type: ignore[arg-type]
 
     def __str__(self) -> str:
         return self.sentence if self.orientation is None else f"{self.orientation}.{self.sentence}"
