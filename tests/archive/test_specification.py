@@ -199,8 +199,14 @@ def test_files_that_are_no_specification(tmp_path: Path) -> None:
     path.write_text("requirement = [")
     with pytest.raises(ac.OptionError, match="is no TOML"):
         read_specification(path)
-    with pytest.raises(ac.OptionError, match="requirement: field required"):
-        Specification.of({})
+    for empty in ({}, {"title": "T"}, {"requirement": []}):
+        with pytest.raises(ac.OptionError, match=r"there is no requirement in it: write \[\[req"):
+            Specification.of(empty)
+    path.write_text("")
+    with pytest.raises(ac.OptionError, match=r"spec\.toml: there is no requirement in it: .*0\.09"):
+        read_specification(path)
+    with pytest.raises(ac.OptionError, match=r"requirement 1, metric: is missing: write metric ="):
+        Specification.of({"requirement": [{"minimum": 0.3}]})
     with pytest.raises(ac.OptionError, match=r"write \[\[requirement\]\]"):
         Specification.of({"requirement": {"metric": "rer", "minimum": 0.3}})
 

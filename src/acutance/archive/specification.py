@@ -36,6 +36,12 @@ from acutance.raster.document_faults import document_faults
 
 __all__ = ["Requirement", "Specification", "read_specification"]
 
+_LEAST = 'write metric = "mtf_nyquist", for example, and minimum = 0.09 or maximum = ...'
+_NOTHING_ASKED = (
+    "there is no requirement in it: write [[requirement]] on a line, and below it metric = "
+    '"mtf_nyquist" and minimum = 0.09, for example (documentation, "Specifications", has all keys)'
+)
+
 Names = str | list[str]
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 """A number of the file, no text of one and no true or false."""
@@ -202,6 +208,11 @@ def _wrong(error: ValidationError, document: Mapping[str, Any]) -> list[str]:
             said = f"is no key, only {', '.join(model.model_fields)}"
         elif one.kind == "list_type" and isinstance(one.found, Mapping):
             said = f"is a single table, and there may be several: write [[{one.place}]]"
+        elif one.place == "requirement" and (one.kind == "missing" or one.found == []):
+            found.append(_NOTHING_ASKED)
+            continue
+        elif one.kind == "missing":
+            said = f"is missing: {_LEAST}"
         else:
             said = one.message[:1].lower() + one.message[1:]
         found.append(f"{one.place}: {said}")
