@@ -33,7 +33,8 @@ def test_srgb_is_the_inverse_of_its_encoding():
 
 def test_a_gamma_is_the_power_of_the_values():
     assert linear(CODES, 2.2) == pytest.approx(255 * (CODES / 255) ** 2.2)
-    assert linear(-CODES.astype(float), 2) == pytest.approx(-(CODES.astype(float) ** 2))
+    dark = np.array([[-3.0, 2.0], [90.0, 100.0]])
+    assert linear(dark, 2) == pytest.approx(np.sign(dark) * dark**2)
     assert ac.Image.from_array(CODES).linearized(PowerCurve(2.2, 255)).read() == pytest.approx(
         linear(CODES, 2.2)
     )
@@ -105,6 +106,31 @@ def test_an_image_is_linearised_once():
         image.linearized(2.2)
 
 
+@pytest.mark.parametrize(
+    ("values", "curve", "law"),
+    [
+        (CODES - 300.0, 2.2, "a power of light"),
+        (CODES - 20.0, 2.2, "a power of light"),
+        (np.where(CODES == 9, -9999.0, CODES), 2.2, "a power of light"),
+        (CODES.astype("int16") - 400, 0.5, "a power of light"),
+        (CODES / 255.0 - 0.2, "sRGB", "sRGB"),
+        (CODES - 100.0, "sRGB:255", "sRGB"),
+    ],
+)
+def test_values_far_below_zero_are_no_power_of_light(values, curve, law):
+    """They were mirrored about 0 silently."""
+    lowest = f"values down to {np.min(values):g}, and {law} is never below 0: add what was"
+    with pytest.raises(ImageError, match=lowest):
+        linear(values, curve)
+
+
+def test_noise_about_zero_keeps_its_sign_behind_a_power():
+    noise = np.random.default_rng(2).normal(0.0, 0.01, (20, 20))
+    values = noise + np.where(np.arange(20) < 10, 0.0, 0.8)
+    found = linear(values, 1.5)
+    assert np.array_equal(np.sign(found), np.sign(values))
+
+
 def test_srgb_of_floats_beyond_one_is_refused():
     with pytest.raises(ImageError, match="values up to 200: state the value of white"):
         linear(np.full((4, 4), 200.0), "sRGB")
@@ -146,6 +172,30 @@ def test_a_linearised_edge_gives_the_sensor_and_says_so():
     plain = ac.measure_edge(values)
     assert plain.image.linearized is None
     assert "nonlinearity" in {check.name for check in plain.failed_checks}
+    (failed,) = (check for check in plain.failed_checks if check.name == "nonlinearity")
+    assert "linearise the image by its known curve" in failed.message
+
+
+@pytest.mark.parametrize("measure", ["edge", "star"])
+def test_an_image_that_was_linearised_wrongly_is_not_told_to_linearise_it(measure):
+    if measure == "edge":
+        values, _ = gamma_edge(1, gamma=1.0, dark=50)
+        found = ac.measure_edge(ac.Image.from_array(values).linearized(2.2))
+    else:
+        sensor = ac.Sensor([ac.optics.Gaussian(0.4), ac.optics.Detector()])
+        light, _ = ac.simulate.star(
+            sensor, cycles=18, dark=40.0, bright=220.0, snr=200, rng=np.random.default_rng(1)
+        )
+        dark, bright = PowerCurve(2.2, 255.0).linear(np.array([40.0, 220.0])).tolist()
+        found = ac.measure_star(
+            ac.Image.from_array(np.asarray(light)).linearized(PowerCurve(2.2, 255.0)),
+            cycles=18,
+            options=ac.StarOptions(dark=dark, bright=bright),
+        )
+    (failed,) = (check for check in found.failed_checks if check.name == "nonlinearity")
+    assert "was linearised (gamma 2.2, full scale" in failed.message
+    assert "is this its curve, with the right white and power?" in failed.message
+    assert "--linearize" not in failed.message
 
 
 def test_intervals_hold_where_the_dark_has_been_stretched():

@@ -42,6 +42,8 @@ _MAX_FLOAT_SRGB = 1.5
 _GAMMAS = (0.1, 10.0)
 _MAX_DECADES = 12.0
 _MIN_ROWS = 3
+_DARK_NOISE, _DARK_NOISE_OF_SCALE = 0.05, 0.001
+"""Shares of the largest value and of white that noise about 0 may be below it."""
 
 
 class Characteristic(Protocol):
@@ -90,6 +92,7 @@ class SrgbCurve:
 
     def linear(self, values: Floats) -> Floats:
         """Values proportional to light, of the same shape."""
+        _require_light(values, self.full_scale, "sRGB")
         share = values / self.full_scale
         if self.full_scale == 1 and _largest(share) > _MAX_FLOAT_SRGB:
             raise ImageError(
@@ -133,7 +136,8 @@ class PowerCurve:
         return f"gamma {self.gamma:g}, full scale {self.full_scale:g}"
 
     def linear(self, values: Floats) -> Floats:
-        """Values proportional to light, of the same shape."""
+        """Values proportional to light, of the same shape; noise below 0 stays below 0."""
+        _require_light(values, self.full_scale, "a power of light")
         share = values / self.full_scale
         return np.asarray(np.copysign(np.abs(share) ** self.gamma, share) * self.full_scale)
 
@@ -310,6 +314,26 @@ def _require_scale(full_scale: float) -> None:
     require_numbers(full_scale=full_scale)
     if not 0 < full_scale < math.inf:
         raise OptionError(f"full_scale is {full_scale:g}: give the value of white, above 0")
+
+
+def _require_light(values: Floats, full_scale: float, law: str) -> None:
+    """Refuse values that are below 0 by more than noise: the curve has none.
+
+    Raises
+    ------
+    ImageError
+        Names the lowest.
+    """
+    finite = values[np.isfinite(values)]
+    lowest = float(finite.min()) if finite.size else 0.0
+    if lowest >= 0:
+        return
+    if -lowest > max(_DARK_NOISE * _largest(np.abs(finite)), _DARK_NOISE_OF_SCALE * full_scale):
+        raise ImageError(
+            f"the image has values down to {lowest:g}, and {law} is never below 0: add what was "
+            "subtracted from them, give the curve as a table, or declare the value of pixels "
+            "without data (nodata, --nodata)"
+        )
 
 
 def _number(asked: str, text: str) -> float:

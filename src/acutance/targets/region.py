@@ -84,6 +84,21 @@ class RegionPixels:
         found = image_info(self.image, self.box, self.gsd, self.name)
         return replace(found, is_polygon=self.is_polygon)
 
+    @property
+    def curve_advice(self) -> str | None:
+        """What to do where values are not proportional to light, of an image that was linearised.
+
+        ``None`` of others: the advice of the check.
+        """
+        curve = self.image.characteristic
+        if curve is None:
+            return None
+        return (
+            f"values that are not proportional to light change RER and MTF, and the image was "
+            f"linearised ({curve.words}): is this its curve, with the right white and power? A "
+            "linear image needs none"
+        )
+
     @cached_property
     def traces(self) -> ProcessingTraces:
         """What processing left in the pixels and around: the same for all edges of a region."""

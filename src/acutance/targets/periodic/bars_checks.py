@@ -63,7 +63,7 @@ def bars_checks(
         undeclared_fill([region.fill], limits),
         stated_gsd(region.info, limits),
         *processing_checks(region, limits),
-        nonlinearity(_curvature(solved), "bars", limits),
+        nonlinearity(region, _curvature(solved), "bars", limits),
         contrast_uniformity(solved.uneven, _names(solved), limits),
         correlated_noise(
             solved.correlation, solved.snr, limits,

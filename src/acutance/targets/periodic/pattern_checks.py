@@ -15,6 +15,7 @@ from acutance.targets.periodic.curvature import DEPARTURE
 from acutance.targets.periodic.otf_model import FittedOtf
 from acutance.targets.periodic.stated_contrast import StatedContrast
 from acutance.targets.periodic.tuned import QUIET_SNR
+from acutance.targets.region import RegionPixels
 
 __all__ = [
     "contrast_snr",
@@ -77,11 +78,12 @@ def stated_levels(
     return answer("stated_levels", value, found, limits)
 
 
-def nonlinearity(curvature: Estimate, bright: str, limits: Limits) -> Check:
+def nonlinearity(region: RegionPixels, curvature: Estimate, bright: str, limits: Limits) -> Check:
     """How far values depart from a straight line of light; zero where none surely does.
 
     Parameters
     ----------
+    region : RegionPixels
     curvature : Estimate
     bright : str
         What is bright: "spokes".
@@ -95,7 +97,7 @@ def nonlinearity(curvature: Estimate, bright: str, limits: Limits) -> Check:
         f"half way up the contrast the values lie {value} % of it {lies} a straight line of light, "
         f"or bright {bright} are {'wider' if curvature.value > 0 else 'narrower'} than dark ones"
     )
-    return answer("nonlinearity", value.value / 100, found, limits)
+    return answer("nonlinearity", value.value / 100, found, limits, advice=region.curve_advice)
 
 
 def contrast_uniformity(uneven: Sequence[Estimate], where: Sequence[str], limits: Limits) -> Check:

@@ -56,7 +56,7 @@ def star_checks(
         undeclared_fill([region.fill], limits),
         stated_gsd(region.info, limits),
         *processing_checks(region, limits),
-        nonlinearity(solved.curvature, "spokes", limits),
+        nonlinearity(region, solved.curvature, "spokes", limits),
         contrast_uniformity([solved.uneven], ["one side"], limits),
         correlated_noise(
             solved.correlation, snr, limits,

@@ -126,7 +126,7 @@ def check_edge(
         undeclared_fill([region.fill], limits),
         quantisation(region, values, data, limits),
         *(() if of_scene else _of_the_image(region, data, limits)),
-        nonlinearity(data, limits, EDGE),
+        nonlinearity(region, data, limits, EDGE),
         gradient(data, limits),
         correlated_noise(data, limits),
         odd_even(data, limits),

@@ -139,7 +139,9 @@ def _uneven_quantisation(data: CheckData, values: Floats, contrast: float, limit
     return answer("quantisation", value, found, limits)
 
 
-def nonlinearity(data: CheckData, limits: Limits, profile: Profile, sign: float = 1.0) -> Check:
+def nonlinearity(
+    region: RegionPixels, data: CheckData, limits: Limits, profile: Profile, sign: float = 1.0
+) -> Check:
     """How far the image's values depart from a straight line of light, half way up the contrast.
 
     Zero where a linear sensor explains the image about as well. `sign` is -1 of a dark pulse, whose
@@ -155,7 +157,7 @@ def nonlinearity(data: CheckData, limits: Limits, profile: Profile, sign: float 
             f"bright level, as where a detector saturates softly, and leave a straight line of "
             f"light by {100 * value:.1f} ± {100 * std:.1f} % of it"
         )
-        return answer("nonlinearity", value, words, limits)
+        return answer("nonlinearity", value, words, limits, advice=region.curve_advice)
     curvature = sign * found.value
     levels = sorted((sign * data.fit.dark, sign * data.fit.bright))
     law = gamma_of(curvature, found.std, *levels)
@@ -165,7 +167,7 @@ def nonlinearity(data: CheckData, limits: Limits, profile: Profile, sign: float 
     )
     if law:
         words += f", as {law} gives if 0 is dark"
-    return answer("nonlinearity", value, words, limits)
+    return answer("nonlinearity", value, words, limits, advice=region.curve_advice)
 
 
 def gradient(data: CheckData, limits: Limits) -> Check:

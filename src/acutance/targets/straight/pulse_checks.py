@@ -128,7 +128,7 @@ def check_pulse(
         full_pixel([data.fit.response.mtf_nyquist], limits),
         stated_gsd(region.info, limits),
         *processing_checks(region, limits),
-        _nonlinearity(data, limits, width.value, height_ratio.value),
+        _nonlinearity(region, data, limits, width.value, height_ratio.value),
         gradient(data, limits),
         correlated_noise(data, limits),
         odd_even(data, limits),
@@ -170,9 +170,11 @@ def _contrast(data: CheckData, limits: Limits) -> Check:
     return contrast_snr(value, found, limits)
 
 
-def _nonlinearity(data: CheckData, limits: Limits, width_px: float, height_ratio: float) -> Check:
+def _nonlinearity(
+    region: RegionPixels, data: CheckData, limits: Limits, width_px: float, height_ratio: float
+) -> Check:
     sign = data.trimmed.sign if isinstance(data.trimmed, PulsePixels) else 1.0
-    return nonlinearity(data, limits, pulse_profile(width_px, height_ratio), sign)
+    return nonlinearity(region, data, limits, pulse_profile(width_px, height_ratio), sign)
 
 
 def _parallel(data: CheckData, limits: Limits, height_ratio: float) -> Check:
