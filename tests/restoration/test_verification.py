@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import acutance as ac
+from acutance.report import proof_text
 
 
 @pytest.fixture(scope="module")
@@ -80,6 +81,40 @@ def test_what_agrees_is_said_to_and_what_does_not_is_not(pair, method):
     assert not wrong.to_dict()["agrees"]
     for edge in (*proof.edges, *wrong.edges):
         assert edge.difference.value == pytest.approx(edge.after.value - edge.predicted.value)
+
+
+def test_noise_that_is_not_white_does_not_agree(sensor):
+    """Of resampled products SNR falls by less than the noise gain, and nothing was said."""
+    filter = ac.design_restoration(sensor, snr=100, noise_gain=1.8)
+    light, _ = ac.simulate.edge(sensor, shape=(100, 100), angle_deg=7, snr=None)
+    noise = np.random.default_rng(6).normal(size=light.shape)
+    smooth = sum(np.roll(noise, (i, j), (0, 1)) for i in (-1, 0, 1) for j in (-1, 0, 1)) / 3.0
+    scale = np.ptp(light) / 100.0
+    for own, agrees in ((noise, True), (smooth, False)):
+        image = light + scale * own
+        before, after = (ac.Image.from_array(one) for one in (image, ac.restore(image, filter)))
+        proof = ac.verify_restoration(before, after, filter, {"roof": (10, 10, 80, 80)})
+        (edge,) = proof.edges
+        assert edge.white_noise_gain == filter.noise_gain
+        assert proof.noise_agrees == agrees == proof.to_dict()["noise_agrees"]
+        text = proof_text(proof)
+        assert f"{edge.noise_gain:.2f} (1.80)" in text
+        assert (" in sharpness, not in noise" in text) != agrees
+        if agrees:
+            assert edge.noise_off == pytest.approx(0, abs=0.1)
+            assert proof.notes == ()
+        else:
+            assert edge.noise_off < -0.2
+            (note,) = proof.notes
+            assert f"note: {note}" in text
+            words = f"roof: SNR is divided by {edge.noise_gain:.2f}, and white noise is amplified"
+            assert note.startswith(words)
+            assert "resampled or compressed" in note
+    sharp = dataclasses.replace(edge, snr_after=edge.snr_before / 3.0)
+    (note,) = dataclasses.replace(proof, edges=(sharp,)).notes
+    assert "sharpened before" in note
+    silent = dataclasses.replace(edge, snr_before=np.inf)
+    assert dataclasses.replace(proof, edges=(silent,)).noise_agrees
 
 
 def test_an_image_of_another_sensor_is_named(pair):

@@ -104,7 +104,7 @@ def _of_edge(
         name, normal_deg, before.mtf_nyquist, after.mtf_nyquist,
         before.mtf_nyquist * _gain(filter, normal_deg), before.snr, after.snr, after.overshoot,
         before.method, axis_difference(after.line.normal_deg, normal_deg),
-        _designed(filter, [before], np.ones(1)),
+        _designed(filter, [before], np.ones(1)), white_noise_gain=filter.noise_gain,
     )  # fmt: skip
 
 
@@ -184,6 +184,7 @@ def _mean_edge(name: str, pairs: Sequence[_Pair], filter: RestorationFilter) -> 
         _mean(after, "overshoot", weight),
         designed=_designed(filter, before, weight),
         count=len(pairs),
+        white_noise_gain=filter.noise_gain,
     )
 
 

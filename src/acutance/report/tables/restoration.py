@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from acutance.curves import Estimate
     from acutance.restoration import RestorationFilter, RestorationProof
     from acutance.restoration.interpretability import Niirs
+    from acutance.restoration.proof import VerifiedEdge
 
 __all__ = ["niirs_table", "proof_table", "restoration_tables"]
 
@@ -171,7 +172,7 @@ def proof_table(proof: RestorationProof) -> Table:
             word_estimate(one.after).value_and_std,
             word_estimate(one.difference).value_and_std, write_fixed(one.deviations, 1),
             word_estimate(one.overshoot).value_and_std,
-            write_fixed(one.noise_gain, 2) if np.isfinite(one.noise_gain) else MISSING,
+            _noise_gain_words(one),
         )
         for one in proof.edges
     )  # fmt: skip
@@ -186,8 +187,18 @@ def proof_table(proof: RestorationProof) -> Table:
             "Designed for: MTF along the edge's normal of the sensor that the filter was made for. "
             "Predicted: the edge before, times the filter's transfer along its normal. The "
             "deviation of the difference allows for what both measurements share.",
+            "SNR before/after: in brackets that of white noise, the noise gain of the filter.",
         ),
     )  # fmt: skip
+
+
+def _noise_gain_words(edge: VerifiedEdge) -> str:
+    """SNR before over that after, and what it is of white noise."""
+    if not np.isfinite(edge.noise_gain):
+        return MISSING
+    white = edge.white_noise_gain
+    expected = "" if white is None else f" ({write_fixed(white, 2)})"
+    return f"{write_fixed(edge.noise_gain, 2)}{expected}"
 
 
 def niirs_table(found: Niirs) -> Table:
