@@ -41,6 +41,29 @@ def test_the_text_has_both_sides_of_the_bargain(sharpening):
         assert words in text
 
 
+@pytest.mark.parametrize(
+    ("sources", "notes", "shown"),
+    [
+        (["scene"], ["l8.json: usable: noise: it varies"], ["Usable: noise: it varies."]),
+        (
+            ["a", "b"],
+            ["a.json: usable: it varies", "b.json: doubtful: it is short", "no SNR is known"],
+            ["Usable: a.json: it varies.", "b.json: doubtful: it is short.", "no SNR is known."],
+        ),
+        (["scene"], ["no SNR is known"], ["Usable: no SNR is known."]),
+    ],
+)
+def test_a_note_repeats_neither_the_word_nor_the_only_name(sharpening, sources, notes, shown):
+    """ "Usable: l8scan.json: usable: the noise varies" stood there."""
+    document = {**sharpening.to_dict(), "notes": notes, "sources": sources, "verdict": "usable"}
+    page = restoration_page(ac.RestorationFilter.from_dict(document))
+    boxes = [
+        re.sub("<[^>]*>", "", one)
+        for one in re.findall(r'class="verdict[^>]*>(.*?)</div>', page, re.S)
+    ]
+    assert [one.strip() for one in boxes] == shown
+
+
 def test_the_kernel_is_a_table_with_all_its_weights(sharpening):
     kernel = restoration_tables(sharpening)[-1]
     assert len(kernel.rows) == len(kernel.columns) - 1 == 7

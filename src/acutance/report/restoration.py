@@ -143,8 +143,17 @@ def _verdicts(filter: RestorationFilter) -> tuple[Verdict, ...]:
     if not filter.notes:
         return (Verdict("good", "Nothing has to be said against it."),)
     word: VerdictWord = "usable" if filter.verdict == "good" else filter.verdict
-    first, *others = [note.rstrip(".") for note in filter.notes]
+    first, *others = [_without_word(note, word, len(filter.sources)) for note in filter.notes]
     return tuple(Verdict(word, f"{note}.") for note in (f"{word.capitalize()}: {first}", *others))
+
+
+def _without_word(note: str, word: str, sources: int) -> str:
+    """A note without the word that the whole has, and without the name of the only measurement."""
+    name, mark, said = note.partition(f": {word}: ")
+    if not mark:
+        name, said = "", note.removeprefix(f"{word}: ")
+    named = f"{name}: {said}" if name and sources > 1 else said
+    return named.rstrip(".")
 
 
 def _provenance(filter: RestorationFilter) -> Table:
