@@ -11,6 +11,7 @@ import pytest
 
 import acutance as ac
 from acutance.archive.trends import Event, Series, Trend, date_of, decimal_year, fit_trend
+from acutance.archive.trends.crossing import Crossing
 from acutance.archive.trends.normal_mixture import NormalMixture
 from acutance.archive.trends.scatter import with_scatter
 
@@ -49,7 +50,21 @@ def test_the_limit_is_passed_when_the_line_passes_it(falling: Trend) -> None:
     assert early < crossing.median < (late or date_of(2044))
     assert (np.diff(crossing.probability) >= 0).all()
     assert "falls below 0.15 about 202" in crossing.summary()
+    assert late is not None
+    days = f"about {crossing.median} (95 %: {early} to {late}), if the drift goes on"
+    assert crossing.summary() == f"falls below 0.15 {days}"
     json.dumps(crossing.to_dict(), allow_nan=False)
+
+
+def test_a_limit_that_may_never_be_passed_says_so_beside_the_earliest_day() -> None:
+    when = 2024.0 + np.arange(241) / 12
+    may = Crossing(0.2, True, when, np.linspace(0.0, 0.6, when.size))
+    early, late = may.interval
+    assert late is None
+    assert may.summary() == (
+        f"falls below 0.2 about {may.median} (95 %: {early} or later; perhaps not within 20 "
+        "years), if the drift goes on"
+    )
 
 
 def test_a_limit_that_is_passed_or_far_is_told(falling: Trend) -> None:

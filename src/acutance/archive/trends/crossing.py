@@ -85,9 +85,13 @@ class Crossing(ShortRepr):
                 f"does not {verb} {self.limit:g} within {self.years:.0f} years, with a probability "
                 f"of {1 - self.probability[-1]:.2f}, if the drift goes on"
             )
-        since = f"not before {early}" if early is not None else "any day"
-        until = f"by {late}" if late is not None else f"or not within {self.years:.0f} years"
-        return f"{verb} {self.limit:g} about {median} ({since}, {until}), if the drift goes on"
+        # Where the median comes within the time, so does the earlier day.
+        days = (
+            f"{early} to {late}"
+            if late is not None
+            else f"{early} or later; perhaps not within {self.years:.0f} years"
+        )
+        return f"{verb} {self.limit:g} about {median} (95 %: {days}), if the drift goes on"
 
     def to_dict(self) -> dict[str, Any]:
         """Limit, dates in ISO 8601 (``None``: not within the time), probabilities."""
