@@ -109,6 +109,29 @@ def test_bad_usage_is_exit_2_with_a_message(acutance, words):
     assert result.stderr
 
 
+@pytest.mark.parametrize(
+    ("word", "meant"),
+    [
+        ("pair", "'biresolution', 'simulate pair'"),
+        ("compare", "'archive compare'"),
+        ("design", "'restore design'"),
+        ("mirrors", "'points', 'plan mirrors'"),
+        ("archve", "'archive'"),
+    ],
+)
+def test_an_unknown_command_is_answered_by_what_may_be_meant(acutance, word, meant):
+    done = acutance(word, "x.tif")
+    assert done.exit_code == 2
+    assert f"No such command '{word}'. Did you mean {meant}?" in done.stderr
+
+
+def test_commands_that_other_words_stand_for_are_there():
+    names = {words for words, _ in commands()}
+    for word, meant in app_module._ALSO_CALLED.items():
+        assert (word,) not in names
+        assert all((one,) in names for one in meant)
+
+
 def test_run_turns_an_error_into_one_message_without_a_traceback(monkeypatch, capsys):
     def broken(**_):
         raise ImageError("the disk is gone: bring it back")

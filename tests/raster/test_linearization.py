@@ -64,6 +64,7 @@ def test_a_table_is_straight_in_between(tmp_path):
         ("0,0\n10,1\n20,1\n", r"the light goes from 1 to 1 \(rows 2 and 3\): both columns have to"),
         ("0,0\n10,1\n9,2\n", "the stored value goes from 10 to 9"),
         ("DN,light\n0,0\n10,1\n", "has 2 rows of numbers: a table has 3 rows or more"),
+        ("a;b\n0;0\n", "has 1 row of numbers: a table has 3 rows or more"),
         ("0,0\n10,one\n20,2\n", "has a row"),
     ],
 )

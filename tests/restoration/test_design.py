@@ -66,6 +66,15 @@ def test_deviations_after_are_those_before_times_the_filter(edges, sharpening):
     assert after.value == pytest.approx(gain * before.value, rel=5e-3)
 
 
+def test_an_overshoot_in_per_cent_is_asked_for_its_share(sensor):
+    with pytest.raises(ac.OptionError, match=r"share of the contrast: was 0\.05 \(5 %\) meant\?"):
+        ac.design_restoration(sensor, snr=100, overshoot=5, size=7)
+    for knob in ({"overshoot": 0.9}, {"overshoot": 500.0}, {"mtf_nyquist": 5.0}):
+        with pytest.raises(ac.OptionError) as caught:
+            ac.design_restoration(sensor, snr=100, size=7, **knob)
+        assert "meant" not in str(caught.value)
+
+
 def test_a_deviation_of_overshoot_is_the_scatter_over_the_posterior(edges, sharpening):
     model = ac.combine(edges).otf.model
     response = Otf2d(FilteredOtf(model, sharpening.kernel)).response(0.0)

@@ -67,6 +67,21 @@ class _Commands(TyperGroup):
         with _stdout_needed():
             return super().make_context(*words, **settings)
 
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        word = args[0]
+        meant = [] if word in self.commands or ctx.resilient_parsing else self._meant_by(word)
+        if meant:
+            ctx.fail(f"No such command {word!r}. Did you mean {', '.join(map(repr, meant))}?")
+        return super().resolve_command(ctx, args)
+
+    def _meant_by(self, word: str) -> list[str]:
+        """Commands that another word is used for, and those of this name in groups."""
+        groups = {
+            name: one.commands for name, one in self.commands.items() if hasattr(one, "commands")
+        }
+        inner = [f"{name} {word}" for name, commands in groups.items() if word in commands]
+        return [*_ALSO_CALLED.get(word, ()), *inner]
+
     def invoke(self, ctx: Any) -> Any:
         try:
             with _stdout_needed(), outputs_of_a_run(), log_said():
@@ -112,6 +127,8 @@ class _Command(TyperCommand):
             raise
 
 
+_ALSO_CALLED = {"pair": ("biresolution",), "mirrors": ("points",), "lamps": ("points",)}
+"""What people and the package's rooms call a command besides its name."""
 _NUMBERS = {"valid number": "no number", "valid integer": "no whole number"}
 """What typer says of numbers, without the text that was typed."""
 

@@ -367,7 +367,8 @@ def _rows(path: str) -> Floats:
         del read[0]
     wrong = next((row for row in read if not _are_numbers(row)), None)
     if wrong is not None or len(read) < _MIN_ROWS:
-        found = f"a row {wrong}" if wrong is not None else f"{len(read)} rows of numbers"
+        many = "row" if len(read) == 1 else "rows"
+        found = f"a row {wrong}" if wrong is not None else f"{len(read)} {many} of numbers"
         raise OptionError(
             f"{path} has {found}: a table has {_MIN_ROWS} rows or more of two numbers, stored "
             "value and light"

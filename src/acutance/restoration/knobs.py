@@ -131,5 +131,12 @@ def _out_of_reach(knob: Knob, values: Floats, size: int) -> str:
         f"{_WORDS[knob.name]} of {knob.value:g} was requested, and kernels of {size} by {size} "
         f"pixels for this sensor reach {values.min():.{digits}f} to {values.max():.{digits}f}: "
         "choose a value between them, or the sharper aim (desired='point', "
-        "--desired point)"
+        f"--desired point){_meant(knob)}"
     )
+
+
+def _meant(knob: Knob) -> str:
+    """A question, where per cent may have been given for a share."""
+    if knob.name != "overshoot" or not 1 <= knob.value < 100:
+        return ""
+    return f"; it is a share of the contrast: was {knob.value / 100:g} ({knob.value:g} %) meant?"
