@@ -111,7 +111,7 @@ def test_an_image_is_linearised_once():
     ("values", "curve", "law"),
     [
         (CODES - 300.0, 2.2, "a power of light"),
-        (CODES - 20.0, 2.2, "a power of light"),
+        (CODES - 30.0, 2.2, "a power of light"),
         (np.where(CODES == 9, -9999.0, CODES), 2.2, "a power of light"),
         (CODES.astype("int16") - 400, 0.5, "a power of light"),
         (CODES / 255.0 - 0.2, "sRGB", "sRGB"),

@@ -42,8 +42,9 @@ _MAX_FLOAT_SRGB = 1.5
 _GAMMAS = (0.1, 10.0)
 _MAX_DECADES = 12.0
 _MIN_ROWS = 3
-_DARK_NOISE, _DARK_NOISE_OF_SCALE = 0.05, 0.001
-"""Shares of the largest value and of white that noise about 0 may be below it."""
+_DARK_NOISE, _DARK_NOISE_OF_SCALE = 0.1, 0.001
+"""Shares of the largest value and of white that values may be below 0: noise about it does, and so
+do undershoots of kernels."""
 
 
 class Characteristic(Protocol):
