@@ -246,7 +246,7 @@ def test_notes_name_the_file_and_the_failed_checks_of_the_combination(acutance, 
     assert filter["verdict"] == "doubtful"
     page = (tmp_path / "f.html").read_text()
     assert "Doubtful: Bent.json" not in page
-    assert "bent.json: doubtful: it is bent" in page
+    assert "bent.json: it is bent" in page
     assert "Nothing has to be said" not in page
 
 

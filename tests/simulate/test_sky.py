@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from acutance import ModelError, OptionError
+from acutance import ModelError
 from acutance.optics import Detector, Gaussian, Sensor
 from acutance.simulate import Galaxy, SkyField, render_patches, sky
 
@@ -54,14 +54,14 @@ def test_a_field_holds_what_was_asked_for():
 
 
 @pytest.mark.parametrize(
-    ("wrong", "error"),
+    "wrong",
     [
-        (lambda: SkyField(stars=-1), ModelError),
-        (lambda: SkyField(snr=(9.0, 3.0)), OptionError),
-        (lambda: Galaxy(0.0, 0.0, 1.0, 0.0), ModelError),
-        (lambda: Galaxy(0.0, 0.0, 1.0, 1.0, "sersic"), ModelError),
+        lambda: SkyField(stars=-1),
+        lambda: SkyField(snr=(9.0, 3.0)),
+        lambda: Galaxy(0.0, 0.0, 1.0, 0.0),
+        lambda: Galaxy(0.0, 0.0, 1.0, 1.0, "sersic"),
     ],
 )
-def test_fields_that_mean_nothing_are_refused(wrong, error):
-    with pytest.raises(error):
+def test_fields_that_mean_nothing_are_refused(wrong):
+    with pytest.raises(ModelError):
         wrong()

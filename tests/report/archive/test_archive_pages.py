@@ -7,6 +7,7 @@ import re
 import tomllib
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
+from importlib import import_module
 from itertools import pairwise
 
 import numpy as np
@@ -219,7 +220,9 @@ def test_all_limits_of_the_metric_that_apply_to_the_sensor_are_drawn(
         drawn.append((trend.metric, limit))
         return trend_plate(trend, limit)
 
-    monkeypatch.setattr("acutance.report.archive.sensor_page.trend_plate", plate)
+    # The package's own name for the module is that of its function.
+    module = import_module("acutance.report.archive.sensor_page")
+    monkeypatch.setattr(module, "trend_plate", plate)
     sensor_page(archive, "QB02", specification=place)
     assert drawn == [("mtf_nyquist", [0.2, 0.9])]
 
