@@ -156,12 +156,12 @@ def design(
         size=size, method=method, scene=_scene(scene), desired=desired,  # type: ignore[arg-type]
         isotropic=isotropic, gsd_m=parse_gsd(gsd), names=inputs or None,
     )  # fmt: skip
-    found.write(target_file.place)
-    say(f"wrote {target_file.path}")
+    text = json_text(found.to_dict())
+    target_file.deliver(text)
     _draw(drawing, found)
     if page is not None:
         page.deliver(restoration_page(found, command=command_line()))
-    typer.echo(json_text(found.to_dict()) if as_json else restoration_text(found))
+    typer.echo(text if as_json else restoration_text(found))
 
 
 @app.command("apply", epilog=EXAMPLE)
