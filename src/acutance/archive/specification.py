@@ -30,7 +30,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 
 from acutance.curves import METRICS
 from acutance.curves.metric_bounds import limit_fault
-from acutance.curves.metric_names import likely_metric
+from acutance.curves.metric_names import did_you_mean
 from acutance.errors import OptionError
 from acutance.raster.document_faults import document_faults
 
@@ -105,9 +105,7 @@ class Requirement(BaseModel):
     @classmethod
     def _is_metric(cls, name: str) -> str:
         if name not in METRICS:
-            likely = likely_metric(name)
-            meant = "" if likely is None else f"; did you mean {likely}?"
-            raise ValueError(f"{name!r} is none of {', '.join(METRICS)}{meant}")
+            raise ValueError(f"{name!r} is none of {', '.join(METRICS)}{did_you_mean(name)}")
         return name
 
     @property

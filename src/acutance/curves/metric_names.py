@@ -7,7 +7,7 @@ from difflib import get_close_matches
 from acutance.curves.metric_words import METRIC_WORDS
 from acutance.curves.response import METRICS
 
-__all__ = ["likely_metric", "metric_of"]
+__all__ = ["did_you_mean", "likely_metric", "metric_of"]
 
 _KEYS = {METRIC_WORDS[name].label: name for name in METRICS} | {
     METRIC_WORDS[name].label_with_unit: name for name in METRICS
@@ -31,6 +31,17 @@ def metric_of(name: str) -> str:
     ('mtf_nyquist', 'rer')
     """
     return _KEYS.get(name, name)
+
+
+def did_you_mean(name: str) -> str:
+    """A question to end an error with, of what an unknown name resembles; empty if it is nothing.
+
+    Parameters
+    ----------
+    name : str
+    """
+    likely = likely_metric(name)
+    return "" if likely is None else f"; did you mean {likely}?"
 
 
 def likely_metric(name: str) -> str | None:

@@ -18,7 +18,7 @@ from acutance.arguments import require_all
 from acutance.curves import METRICS, Estimate
 from acutance.curves.estimate import normal_quantile
 from acutance.curves.metric_bounds import limit_fault
-from acutance.curves.metric_names import likely_metric, metric_of
+from acutance.curves.metric_names import did_you_mean, metric_of
 from acutance.errors import OptionError
 from acutance.targets.recorded_direction import RecordedDirection
 from acutance.targets.target_result import TargetResult
@@ -101,8 +101,7 @@ class ToleranceLimit:
 
     def __post_init__(self) -> None:
         if self.metric not in METRICS:
-            likely = likely_metric(self.metric) if isinstance(self.metric, str) else None
-            meant = "" if likely is None else f"; did you mean {likely}?"
+            meant = did_you_mean(self.metric) if isinstance(self.metric, str) else ""
             raise OptionError(
                 f"a requirement asks for {self.metric!r}, which is no number of a measurement, "
                 f"only {', '.join(METRICS)}{meant}"
