@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from numbers import Real
 from statistics import NormalDist
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeGuard
 
 from acutance.arguments import require_numbers
 from acutance.errors import OptionError
@@ -230,14 +230,14 @@ class Estimate:
     def __mul__(self, other: float | Estimate) -> Estimate:
         if not _is_one_exact(self, other, "product"):
             return NotImplemented
-        if isinstance(other, Estimate) and other.std != 0:
+        if _is_uncertain(other):
             return other._linear(self.value, 0.0)
         return self._linear(float(other), 0.0)
 
     def __truediv__(self, other: float | Estimate) -> Estimate:
         if not _is_one_exact(self, other, "ratio"):
             return NotImplemented
-        if isinstance(other, Estimate) and other.std != 0:
+        if _is_uncertain(other):
             return self.__rtruediv__(other)
         return self._linear(1 / float(other), 0.0)
 
@@ -255,7 +255,7 @@ class Estimate:
 
     def _plus(self, sign: float, other: float | Estimate) -> Estimate:
         """``self + sign * other``, of which one at most has a deviation."""
-        if isinstance(other, Estimate) and other.std != 0:
+        if _is_uncertain(other):
             return other._linear(sign, self.value)
         return self._linear(1.0, sign * float(other))
 
@@ -293,15 +293,20 @@ def _is_number(other: object) -> bool:
     return isinstance(other, Real | Estimate)
 
 
+def _is_uncertain(one: object) -> TypeGuard[Estimate]:
+    """Whether something is an estimate with a deviation, which a truth has not."""
+    return isinstance(one, Estimate) and one.std != 0
+
+
 def _is_one_exact(one: Estimate, other: object, operation: str) -> bool:
-    """Whether `other` is a number, and it or the estimate has no deviation: a truth has none.
+    """Whether `other` is a number, and it or the estimate has no deviation.
 
     Raises
     ------
     TypeError
         If both have one.
     """
-    if isinstance(other, Estimate) and one.std != 0 and other.std != 0:
+    if _is_uncertain(one) and _is_uncertain(other):
         raise TypeError(
             f"the {operation} of two estimates has no standard deviation as long as their "
             "covariance is not known: use float() of one of them, or of both"

@@ -47,16 +47,18 @@ def extent_of(smooth: Floats, usable: Flags, star: SiemensStar, inner: float) ->
         first, count = weakest + 1, sectors - 1
     kept = np.isin(sector, (first + np.arange(count)) % sectors)
     rim = _rim(radius[kept], wave[kept], value[kept], inner)
+    whole = replace(star, rim_px=rim, first_deg=-180.0, sweep_deg=360.0)
     if count == sectors:
-        return replace(star, rim_px=rim, first_deg=-180.0, sweep_deg=360.0)
-    own = (radius > inner) & (radius < rim)
-    begin, half = first * width - math.pi, 0.5 * count * width
-    off = np.mod(angle[own] - begin - half + math.pi, 2 * math.pi) - math.pi
-    before, after = (_end(side * off, wave[own], value[own], half, width) for side in (-1.0, 1.0))
+        return whole
+    half = 0.5 * count * width
+    middle_rad = first * width - math.pi + half
+    near = (radius > inner) & (radius < rim)
+    off = np.mod(angle[near] - middle_rad + math.pi, 2 * math.pi) - math.pi
+    before, after = (_end(side * off, wave[near], value[near], half, width) for side in (-1.0, 1.0))
     if before + after > 2 * math.pi - _NO_GAP_CYCLES / _SECTOR_CYCLES * width:
-        return replace(star, rim_px=rim, first_deg=-180.0, sweep_deg=360.0)
-    first_deg = math.degrees(math.remainder(begin + half - before, 2 * math.pi))
-    return replace(star, rim_px=rim, first_deg=first_deg, sweep_deg=math.degrees(before + after))
+        return whole
+    first_deg = math.degrees(math.remainder(middle_rad - before, 2 * math.pi))
+    return replace(whole, first_deg=first_deg, sweep_deg=math.degrees(before + after))
 
 
 def _end(off: Floats, wave: Floats, value: Floats, coarse: float, width: float) -> float:
