@@ -11,7 +11,9 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-__all__ = ["partial_folder", "whole_file"]
+from acutance.errors import AcutanceError, OptionError
+
+__all__ = ["named_whole_file", "partial_folder", "whole_file"]
 
 
 @contextmanager
@@ -59,6 +61,34 @@ def whole_file(target: str | os.PathLike[str]) -> Iterator[Path]:
         part = Path(folder, place.name)
         yield part
         os.replace(part, place)
+
+
+@contextmanager
+def named_whole_file(
+    path: str | os.PathLike[str], refusal: type[AcutanceError] = OptionError
+) -> Iterator[Path]:
+    """A whole file that a caller named: what the system refuses is said in words.
+
+    Parameters
+    ----------
+    path : str or path
+    refusal : class of error, optional
+
+    Yields
+    ------
+    Path
+
+    Raises
+    ------
+    OptionError, or what `refusal` is
+        If the file cannot be written.
+    """
+    try:
+        with whole_file(path) as part:
+            yield part
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise refusal(f"{path} cannot be written ({reason}): choose another path") from error
 
 
 def _system() -> str:

@@ -31,7 +31,7 @@ import numpy as np
 
 from acutance.arguments import require_kind, require_path, require_types
 from acutance.errors import ModelError, OptionError
-from acutance.execution.partial_folder import whole_file
+from acutance.execution.partial_folder import named_whole_file
 from acutance.optics.block import Block
 from acutance.optics.catalogue import BLOCKS
 from acutance.optics.sensor import Sensor, require_sensor
@@ -142,12 +142,8 @@ def write_sensor(described: Sensor | SensorFile, path: str | os.PathLike[str]) -
     text = sensor_file_to_toml(
         described if isinstance(described, SensorFile) else SensorFile(require_sensor(described))
     )
-    try:
-        with whole_file(path) as part:
-            part.write_text(text, encoding="utf-8")
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise ModelError(f"{path} cannot be written ({reason}): choose another path") from error
+    with named_whole_file(path, ModelError) as part:
+        part.write_text(text, encoding="utf-8")
 
 
 def sensor_file_from_toml(

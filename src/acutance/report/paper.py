@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from acutance.arguments import require_choice, require_class, require_path, require_whole
-from acutance.errors import OptionError
-from acutance.execution.partial_folder import whole_file
+from acutance.execution.partial_folder import named_whole_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure, FigureBase, SubFigure
@@ -197,9 +196,5 @@ def save_figure(figure: Figure, path: str | Path, dpi: int = 150) -> None:
     """
     require_path(path=path)
     content = figure_bytes(figure, Path(path).suffix.lower(), dpi)
-    try:
-        with whole_file(path) as part:
-            part.write_bytes(content)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise OptionError(f"{path} cannot be written ({reason}): choose another path") from error
+    with named_whole_file(path) as part:
+        part.write_bytes(content)

@@ -18,7 +18,7 @@ from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
-from acutance.execution.partial_folder import whole_file
+from acutance.execution.partial_folder import named_whole_file
 from acutance.raster.image import AlongTrack
 from acutance.restoration.filtered_otf import kernel_otf
 from acutance.targets.check import VerdictWord
@@ -142,14 +142,8 @@ class RestorationFilter(ShortRepr):
         """
         require_path(path=path)
         text = json_text(self.to_dict())
-        try:
-            with whole_file(path) as part:
-                part.write_text(text, encoding="utf-8")
-        except (OSError, ValueError) as error:
-            reason = getattr(error, "strerror", None) or str(error)
-            raise OptionError(
-                f"{path} cannot be written ({reason}): choose another path"
-            ) from error
+        with named_whole_file(path) as part:
+            part.write_text(text, encoding="utf-8")
 
     def to_dict(self) -> dict[str, Any]:
         """The document; nothing is lost by `from_dict`."""
