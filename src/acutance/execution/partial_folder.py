@@ -80,8 +80,8 @@ def named_whole_file(
 
     Raises
     ------
-    OptionError, or what `refusal` is
-        If the file cannot be written.
+    OptionError
+        If the file cannot be written, where `refusal` names no other class.
     """
     try:
         with whole_file(path) as part:
