@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: test demo docs lint loops bench clean
+.PHONY: test demo docs lint loops modules clean
 
 $(VENV)/.installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -11,7 +11,7 @@ $(VENV)/.installed: pyproject.toml
 	touch $@
 
 test: $(VENV)/.installed
-	$(MAKE) --jobs=2 lint loops
+	$(MAKE) --jobs=2 lint loops modules
 	$(BIN)/python -m pytest -n 2
 
 lint: $(VENV)/.installed
@@ -22,6 +22,10 @@ lint: $(VENV)/.installed
 # Compiled once, beside the linters, and not by each process that runs tests.
 loops: $(VENV)/.installed
 	$(BIN)/python tests/compile_loops.py
+
+# The same of all modules of tests, while a core has nothing to do; what fails here is said by the run of tests.
+modules: $(VENV)/.installed
+	-$(BIN)/python -m pytest --collect-only --quiet > /dev/null
 
 demo: $(VENV)/.installed
 	$(BIN)/acutance demo demo
