@@ -23,6 +23,8 @@ from numpy.typing import NDArray
 from scipy import fft
 
 from acutance.curves.grid import Floats
+from acutance.numerics.compiled import compiled
+from acutance.numerics.cosine_sums import cosine_sums
 from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA
 from acutance.numerics.noise_spectrum import NoiseSpectrum, padded_shape
 from acutance.targets.straight.tuned import (
@@ -170,26 +172,19 @@ class ColouredNoise:
         -------
         (m, m) array
         """
-        number = np.arange(share.size)
-        apart, apart_px = np.abs(np.subtract.outer(number, number)), cell_px * number
+        apart_px = cell_px * np.arange(share.size)
         # The spline passes no wave beyond the Nyquist frequency of its cells.
         cycles = cell_px * _FREQ_CPP
         passed = np.where(cycles < 0.5, np.sinc(cycles) ** 4, np.inf)
-        waves = np.cos(2 * np.pi * apart_px[:, None] * _FREQ_CPP)
         power = (self.along - self.white[:, None]) / (length_px * passed**2)
         step_cpp = _FREQ_CPP[1] - _FREQ_CPP[0]
         power[:, 1:] *= 2
-        by_lag = step_cpp * (power @ waves.T) * np.exp(-0.5 * (apart_px / _INDEPENDENT_PX) ** 2)
-        covariance = np.zeros(apart.shape)
-        # What of the noise ends at the border, and what is there besides, of a half each.
-        rest = np.sqrt(np.maximum(share * (1 - share), 0.0))
-        there = np.outer(rest, rest)
-        for own, variance, lags in zip((1 - share, share), sides, by_lag, strict=True):
-            covariance += variance * (np.outer(own, own) + there) * lags[apart]
+        by_lag = (sides * step_cpp)[:, None] * cosine_sums(power, 2 * np.pi * cycles, share.size)
+        by_lag *= np.exp(-0.5 * (apart_px / _INDEPENDENT_PX) ** 2)
         # What no pixel shows beside a border: a strip along it within the blur.
         along = np.exp(-0.5 * (apart_px / _STRIP_PX) ** 2)
         strip = BORDER_STRIP**2 * float(np.mean(sides * self._ground))
-        return np.asarray(covariance + strip * there * along[apart])
+        return _of_both_sides(share, by_lag, strip * along)
 
     def disturbing(self, columns: Floats, sides: Floats) -> Floats:
         """Variance of white noise that would disturb regressors as much, (q,).
@@ -211,3 +206,24 @@ class ColouredNoise:
         )
         total = np.maximum(power.sum(axis=(1, 2)), 1e-300)
         return np.asarray(np.tensordot(power, noise, 2) / total)
+
+
+@compiled
+def _of_both_sides(share: Floats, by_lag: Floats, strip: Floats) -> Floats:
+    """Covariance of coefficients from those of both sides' noise by their distance, (2, m).
+
+    What of the noise ends at the border, and what is there besides, of a half each; a strip (m,)
+    is there alone.
+    """
+    dark, rest = 1 - share, np.sqrt(np.maximum(share * (1 - share), 0.0))
+    found = np.empty((share.size, share.size))
+    for i in range(share.size):
+        for j in range(i + 1):
+            first, last, there = by_lag[0, i - j], by_lag[1, i - j], rest[i] * rest[j]
+            found[i, j] = (
+                (dark[i] * dark[j] + there) * first
+                + (share[i] * share[j] + there) * last
+                + there * strip[i - j]
+            )
+            found[j, i] = found[i, j]
+    return found

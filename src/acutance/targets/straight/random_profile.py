@@ -5,6 +5,8 @@ coefficients have the covariance C, the noise of the pixels is white noise of we
 Generalised least squares needs their sums alone (the matrix inversion lemma):
 
     A^T V^-1 A = A^T W A - A^T W P (C^-1 + P^T W P)^-1 P^T W A
+
+With the banded factor L of P^T W P = L L^T the inverse is L^-T (1 - (1 + L^T C L)^-1) L^-1.
 """
 
 from __future__ import annotations
@@ -14,8 +16,15 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.linalg import solve_triangular
 
 from acutance.curves.grid import Floats
+from acutance.numerics.banded_matrices import (
+    banded_back_substitution,
+    banded_factor,
+    banded_substitution,
+    between_banded_factors,
+)
 from acutance.numerics.normal_equations import Normal
 from acutance.targets.straight.coloured_noise import ColouredNoise
 from acutance.targets.straight.linear_model import Linear, NoiseModel
@@ -63,13 +72,15 @@ class RandomProfile:
         disturbing : (q,) array
             Variance of the noise that disturbs those, where that of unit weight is 1.
         """
-        left = _without(normal, self._gain, self.beside, self.projection)
+        explained = self._explained(np.column_stack([self.beside, self.projection]))
+        left = _without(normal, explained[:-1, :-1], explained[:-1, -1])
         # What varies along the target: as much of each regressor is noise, at random.
         last = slice(-disturbing.size, None)
         own = np.maximum(normal.gram.diagonal()[last], 1e-300)
         random = np.diag(np.maximum(disturbing - 1, 0.0) / own)
         rows = left.gram[last]
-        return _without(left, _gain(rows[:, last], random), rows, left.projection[last])
+        followed = _gain(rows[:, last], random) @ rows
+        return _without(left, rows.T @ followed, followed.T @ left.projection[last])
 
     def followed(self, rows: Floats) -> Floats:
         """Mean of some rows (k, n) along the target, cell by cell of the spline, at the pixels."""
@@ -80,11 +91,32 @@ class RandomProfile:
     def likeliest(self, coefficients: Floats) -> Floats:
         """The profile at the pixels under given coefficients of ESF and regressors, (n,)."""
         left = self.projection - self.beside @ coefficients
-        return combine(*self.stencil, self._gain @ left)
+        known = banded_substitution(self._factor, left[:, None])[:, 0]
+        unknown = solve_triangular(self._certainty.T, self._unknown(known), check_finite=False)
+        return combine(*self.stencil, banded_back_substitution(self._factor, known - unknown))
+
+    def _explained(self, columns: Floats) -> Floats:
+        """What the profile explains of the products of all weighted sums (k, m), (m, m)."""
+        known = banded_substitution(self._factor, columns)
+        unknown = self._unknown(known)
+        return np.asarray(known.T @ known - unknown.T @ unknown)
+
+    def _unknown(self, known: Floats) -> Floats:
+        """What the prior leaves open of columns that pixels alone explain, in its own units."""
+        return np.asarray(
+            solve_triangular(self._certainty, known, lower=True, check_finite=False), float
+        )
 
     @cached_property
-    def _gain(self) -> Floats:
-        return _gain(self.own, self.covariance)
+    def _factor(self) -> Floats:
+        """Bands of the factor of `own`."""
+        return banded_factor(self.own)
+
+    @cached_property
+    def _certainty(self) -> Floats:
+        """Lower factor of ``1 + L^T C L``."""
+        prior = between_banded_factors(self._factor, self.covariance)
+        return np.asarray(np.linalg.cholesky(prior + np.eye(len(prior))), float)
 
 
 def random_profile(
@@ -126,14 +158,9 @@ def random_profile(
     )  # fmt: skip
 
 
-def _without(normal: Normal, gain: Floats, beside: Floats, projection: Floats) -> Normal:
-    """Equations without what random coefficients explain: `gain` is their covariance as left."""
-    explained = gain @ beside
-    return replace(
-        normal,
-        gram=normal.gram - beside.T @ explained,
-        projection=normal.projection - explained.T @ projection,
-    )
+def _without(normal: Normal, gram: Floats, projection: Floats) -> Normal:
+    """Equations without what is explained of their sums."""
+    return replace(normal, gram=normal.gram - gram, projection=normal.projection - projection)
 
 
 def _gain(seen: Floats, covariance: Floats) -> Floats:
