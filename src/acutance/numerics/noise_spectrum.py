@@ -17,7 +17,7 @@ from scipy import fft
 
 from acutance.curves.grid import Floats
 
-__all__ = ["NoiseSpectrum", "padded_shape"]
+__all__ = ["NoiseSpectrum", "lag_waves", "padded_shape"]
 
 _REACH: Final = 8
 """Pixels this far apart are taken to be independent: grains of 1.5 px, and kernels of resampling,
@@ -66,21 +66,19 @@ class NoiseSpectrum:
         shape = padded_shape(rows, cols)
         image = np.zeros(shape)
         image[rows, cols] = residual
-        sums = fft.irfft2(np.abs(fft.rfft2(image)) ** 2, shape)[_DOWN, _RIGHT]
+        waves = fft.rfft2(image)
+        sums = fft.irfft2(waves.real**2 + waves.imag**2, shape)[_DOWN, _RIGHT]
         middle = sums.size // 2
         if not sums[middle] > 0:
             return cls(np.eye(1, sums.size, middle)[0])
         return cls(sums * _TAPER / sums[middle])
 
-    def along(self, normal: tuple[float, float], freq_cpp: Floats) -> Floats:
-        """Power at frequencies (k,) along a direction (x, y), (k,).
+    def along(self, waves: Floats) -> Floats:
+        """Power at frequencies along a direction whose `lag_waves` (k, n) are given, (k,).
 
         Pixels are a lattice: beyond their Nyquist frequency the power comes again.
         """
-        # Covariances are the same either way.
         middle = self.covariance.size // 2
-        along_px = (normal[0] * _RIGHT + normal[1] * _DOWN)[:middle]
-        waves = np.cos(2 * np.pi * freq_cpp[:, None] * along_px)
         power = self.covariance[middle] + 2 * waves @ self.covariance[:middle]
         return np.asarray(np.maximum(power, self.least))
 
@@ -95,3 +93,12 @@ def padded_shape(rows: NDArray[np.intp], cols: NDArray[np.intp]) -> tuple[int, i
     """Shape of an image of some pixels, with room for the lags, that is transformed fast."""
     height, width = (fft.next_fast_len(int(one.max()) + 1 + _REACH, True) for one in (rows, cols))
     return height, width
+
+
+def lag_waves(normal: tuple[float, float], freq_cpp: Floats) -> Floats:
+    """Cosines over one half of the lags, of frequencies (k,) along a direction (x, y), (k, n).
+
+    Covariances are the same either way.
+    """
+    along_px = (normal[0] * _RIGHT + normal[1] * _DOWN)[: _RIGHT.size // 2]
+    return np.asarray(np.cos(2 * np.pi * freq_cpp[:, None] * along_px))

@@ -10,7 +10,7 @@ from scipy.ndimage import gaussian_filter
 
 import acutance as ac
 from acutance.curves.grid import Floats
-from acutance.numerics.noise_spectrum import NoiseSpectrum
+from acutance.numerics.noise_spectrum import NoiseSpectrum, lag_waves
 from acutance.simulate import LandscapeOptions, landscape
 from acutance.targets.straight.coloured_noise import ColouredNoise
 
@@ -31,7 +31,7 @@ def grains(seed: int, grain_px: float = 1.5) -> Floats:
 def test_white_noise_has_the_same_power_everywhere():
     noise = np.random.default_rng(3).standard_normal(SIZE**2)
     freq_cpp = np.linspace(0.0, 1.0, 41)
-    power = NoiseSpectrum.of(noise, ROWS, COLS).along((0.8, 0.6), freq_cpp)
+    power = NoiseSpectrum.of(noise, ROWS, COLS).along(lag_waves((0.8, 0.6), freq_cpp))
     assert power == pytest.approx(1.0, abs=0.25)
     assert np.mean(power) == pytest.approx(1.0, abs=0.05)
 
@@ -41,7 +41,9 @@ def test_the_power_of_grains_is_that_of_their_filter():
     true = 4 * np.pi * 1.5**2 * np.exp(-((2 * np.pi * 1.5 * freq_cpp) ** 2))
     found = np.mean(
         [
-            NoiseSpectrum.of(grains(seed).ravel(), ROWS, COLS).along((0.6, 0.8), freq_cpp)
+            NoiseSpectrum.of(grains(seed).ravel(), ROWS, COLS).along(
+                lag_waves((0.6, 0.8), freq_cpp)
+            )
             for seed in range(20)
         ],
         axis=0,
@@ -54,7 +56,7 @@ def test_the_power_of_grains_is_that_of_their_filter():
 
 def test_pixels_are_a_lattice_whose_power_comes_again():
     spectrum = NoiseSpectrum.of(grains(4).ravel(), ROWS, COLS)
-    near, again = spectrum.along((1.0, 0.0), np.array([0.1, 0.9]))
+    near, again = spectrum.along(lag_waves((1.0, 0.0), np.array([0.1, 0.9])))
     assert again == pytest.approx(near, rel=1e-6)
 
 
@@ -62,7 +64,7 @@ def test_few_pixels_of_any_shape_have_no_negative_power():
     rng = np.random.default_rng(5)
     some = rng.permutation(SIZE**2)[:60]
     spectrum = NoiseSpectrum.of(grains(6).ravel()[some], ROWS[some], COLS[some])
-    assert np.all(spectrum.along((1.0, 0.0), np.linspace(0.0, 2.0, 101)) > 0)
+    assert np.all(spectrum.along(lag_waves((1.0, 0.0), np.linspace(0.0, 2.0, 101))) > 0)
     assert np.all(spectrum.plane((96, 96)) > 0)
 
 

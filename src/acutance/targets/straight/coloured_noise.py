@@ -16,6 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -26,7 +27,7 @@ from acutance.curves.grid import Floats
 from acutance.numerics.compiled import compiled
 from acutance.numerics.cosine_sums import cosine_sums
 from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA
-from acutance.numerics.noise_spectrum import NoiseSpectrum, padded_shape
+from acutance.numerics.noise_spectrum import NoiseSpectrum, lag_waves, padded_shape
 from acutance.targets.straight.tuned import (
     BORDER_STRIP,
     MAX_RESAMPLED_POWER,
@@ -108,7 +109,8 @@ class ColouredNoise:
         ]
         bound = replace(told[0], least=1.0)
         dark, bright = told[0] if many[0] else bound, told[-1] if many[1] else bound
-        along = np.stack([one.along(normal, _FREQ_CPP) for one in (dark, bright)])
+        waves = lag_waves(normal, _FREQ_CPP)
+        along = np.stack([one.along(waves) for one in (dark, bright)])
         return cls((dark, bright), along, at)
 
     @property
@@ -198,14 +200,20 @@ class ColouredNoise:
         shape = padded_shape(*self.at)
         image = np.zeros((len(columns), *shape))
         image[:, self.at[0], self.at[1]] = columns
-        power = np.abs(fft.rfft2(image)) ** 2
+        waves = fft.rfft2(image).reshape(len(columns), -1)
+        power = waves.real**2 + waves.imag**2
         # The frequencies of the other half are not there.
-        power[:, :, 1 : (shape[1] + 1) // 2] *= 2
-        noise = 0.5 * sum(
-            variance * one.plane(shape) for variance, one in zip(sides, self.spectra, strict=True)
-        )
-        total = np.maximum(power.sum(axis=(1, 2)), 1e-300)
-        return np.asarray(np.tensordot(power, noise, 2) / total)
+        there = np.ones((shape[0], shape[1] // 2 + 1))
+        there[:, 1 : (shape[1] + 1) // 2] = 2.0
+        counted = there.ravel()
+        noise = counted * (0.5 * sides @ self._planes)
+        return np.asarray(power @ noise / np.maximum(power @ counted, 1e-300))
+
+    @cached_property
+    def _planes(self) -> Floats:
+        """Power on either side at the frequencies of the pixels' image, (2, n)."""
+        shape = padded_shape(*self.at)
+        return np.stack([one.plane(shape).ravel() for one in self.spectra])
 
 
 @compiled
