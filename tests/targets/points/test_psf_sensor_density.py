@@ -111,5 +111,10 @@ def test_sensors_of_another_blur_have_no_part():
     assert 100 < wide.part.size < narrow.part.size
     assert sensors.about((20.0, 20.0)).part.size == 0
     trailing = sensors.about((2.4, 1.3))
-    assert set(trailing.name[trailing.part]) <= {*FAMILY_LOG_AMPLITUDES, "plain", "scatter"}
+    assert set(trailing.name[trailing.part]) <= {
+        *FAMILY_LOG_AMPLITUDES,
+        "plain",
+        "scatter",
+        "footprint",
+    }
     assert trailing.part.size < narrow.part.size

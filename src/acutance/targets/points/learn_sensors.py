@@ -7,6 +7,7 @@ through these directions are seen through the coordinates, too. `sensor_density`
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Final, NamedTuple, Self
@@ -41,9 +42,13 @@ DENSITY_COUNTS: Final = {
     "shifted": 800,
     "processed": 800,
     "scatter": 600,
+    "footprint": 500,
 }
 """Sensors of the density: more of families that vary in more ways. "plain" is a Gaussian blur and a
-detector, nothing else."""
+detector, nothing else; "footprint" the same with a detector that is no pixel: with gaps between
+detectors, of staggered lines, or of a product that is finer than the sampling."""
+_FOOTPRINT_PX: Final = (0.35, 2.0)
+_FOOTPRINT_RATIO: Final = (0.6, 1 / 0.6)
 _DEPENDENT: Final = 1e-6
 """Singular value over the largest below which directions are combinations of others."""
 
@@ -115,9 +120,19 @@ def draw_departures(counts: Mapping[str, int], seed: int) -> dict[str, Departure
 
 
 def _drawn(family: str, rng: np.random.Generator) -> Sensor:
+    if family == "footprint":
+        return _footprint(rng)
     if family != "plain":
         return draw_sensor(family, rng)
     return Sensor([Gaussian(rng.uniform(0.15, 1.1)), Detector(rng.uniform(0.85, 1.0))])
+
+
+def _footprint(rng: np.random.Generator) -> Sensor:
+    """A detector of another size than a pixel: half of them are square."""
+    width_px = math.exp(rng.uniform(*np.log(_FOOTPRINT_PX)))
+    is_square = rng.random() < 0.5
+    height_px = width_px * (1.0 if is_square else math.exp(rng.uniform(*np.log(_FOOTPRINT_RATIO))))
+    return Sensor([Gaussian(rng.uniform(0.15, 0.7)), Detector(width_px, height_px)])
 
 
 def density(drawn: Mapping[str, Departures]) -> dict[str, Floats]:
