@@ -10,10 +10,18 @@ from acutance.targets.check import Check, Limits, answer
 __all__ = ["full_pixel"]
 
 _SURE = 2.0
+_TOO_SOFT = (
+    "no sensor whose pixels touch is that sharp: the border is sharper than stated, or the image "
+    "was sharpened or decimated; check the softness, and the GSD"
+)
 
 
 def full_pixel(
-    mtf_nyquist: Sequence[Estimate], limits: Limits, *, caution: float | None = None
+    mtf_nyquist: Sequence[Estimate],
+    limits: Limits,
+    *,
+    caution: float | None = None,
+    with_border: Estimate | None = None,
 ) -> Check:
     """Whether an MTF at Nyquist is surely above that of a full square pixel without optics.
 
@@ -28,6 +36,9 @@ def full_pixel(
         Limits the caller changed.
     caution : float, optional
         From where on it is a caution.
+    with_border : Estimate, optional
+        What the image has there, where a stated softness of the border was divided out: if that is
+        possible, the statement is what is not, and a caution.
     """
     surest = max(mtf_nyquist, key=_at_least)
     least = _at_least(surest)
@@ -35,7 +46,11 @@ def full_pixel(
         f"the MTF at Nyquist is {surest}, surely (by {_SURE:.0f} standard deviations) above "
         f"{least:.2f}; that of a full pixel without any optics is .64"
     )
-    return answer("full_pixel", least, found, limits, caution=caution)
+    as_asked = answer("full_pixel", least, found, limits, caution=caution)
+    if with_border is None or as_asked.passed or _at_least(with_border) > as_asked.limit:
+        return as_asked
+    found = f"behind the border's stated softness {found}; with it it is {with_border}"
+    return answer("full_pixel", least, found, limits, caution=0.0, advice=_TOO_SOFT)
 
 
 def _at_least(mtf: Estimate) -> float:

@@ -160,3 +160,70 @@ def test_a_border_that_hides_the_sensor_and_metres_without_a_gsd_are_refused():
         ac.measure_edge(image, options=options)
     with pytest.raises(OptionError, match="needs a GSD"):
         ac.measure_edge(image, options=ac.EdgeOptions(target_softness_m=0.1))
+
+
+def sharp_edge(angle_deg=6.0):
+    """An edge of a clean target behind little more than a full pixel."""
+    sensor = Sensor([Gaussian(0.15), ac.optics.Detector()])
+    return ac.simulate.edge(
+        sensor, angle_deg=angle_deg, snr=100, shape=(60, 60), rng=np.random.default_rng(3)
+    )[0]
+
+
+def check_of(measurement, name):
+    return next(check for check in measurement.checks if check.name == name)
+
+
+def test_a_softness_behind_which_no_sensor_is_possible_makes_the_number_doubtful():
+    image = sharp_edge()
+    assert "full_pixel" not in {check.name for check in ac.measure_edge(image).failed_checks}
+    found = ac.measure_edge(image, options=ac.EdgeOptions(target_softness_px=0.3))
+    check = check_of(found, "full_pixel")
+    assert not found.trusted
+    assert check.severity == "caution"
+    assert check.value == pytest.approx(found.mtf_nyquist.value - 2 * found.mtf_nyquist.std)
+    assert "the border is sharper than stated" in check.message
+
+
+def test_a_softness_that_leaves_no_detector_is_a_failure():
+    found = ac.measure_edge(sharp_edge(), options=ac.EdgeOptions(target_softness_px=0.39))
+    check = check_of(found, "lsf_width_px")
+    assert found.verdict.word == "invalid"
+    assert check.value == pytest.approx(found.fwhm_px.value)
+    assert "the border is sharper than stated" in check.message
+
+
+def test_a_pulse_with_an_impossible_softness_is_named_too():
+    sensor = Sensor([Gaussian(0.15), ac.optics.Detector()])
+    image, _ = ac.simulate.pulse(sensor, width_px=4, snr=100, rng=np.random.default_rng(3))
+    options = ac.PulseOptions(target_softness_px=0.35)
+    found = ac.measure_pulse(image, width_px=4, options=options)
+    assert check_of(found, "full_pixel").severity == "caution"
+    assert not found.trusted
+
+
+def test_an_uncertain_statement_is_not_refuted():
+    """Its interval reaches what a sensor can be."""
+    options = ac.EdgeOptions(target_softness_px=ac.Estimate(0.25, 0.15))
+    found = ac.measure_edge(sharp_edge(), options=options)
+    assert check_of(found, "full_pixel").passed
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_a_true_statement_fails_neither_check(name):
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        image, _ = softened(SYSTEMS[name], 0.3, rng, angle_deg=8, snr=100)
+        found = ac.measure_edge(image, options=ac.EdgeOptions(target_softness_px=0.3))
+        assert check_of(found, "full_pixel").passed
+        assert check_of(found, "lsf_width_px").passed
+
+
+def test_an_image_that_is_too_sharp_by_itself_is_not_laid_to_the_statement():
+    image = sharp_edge()
+    decimated = ac.simulate.edge(SYSTEMS["gaussian"], angle_deg=7, shape=(240, 240))[0][::4, ::4]
+    assert image.shape == decimated.shape
+    found = ac.measure_edge(decimated, options=ac.EdgeOptions(target_softness_px=0.05))
+    check = check_of(found, "full_pixel")
+    assert not check.passed
+    assert "stated" not in check.message

@@ -10,6 +10,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from acutance.curves import Response
 from acutance.curves.grid import Floats
 from acutance.numerics.noise import (
     Correlation,
@@ -102,18 +103,30 @@ class CheckData:
 
     Distances in pixels, values and residuals as shares of the contrast. `before` and `behind` are
     the distances outwards from the target's first and last step: of an edge, its dark and its
-    bright side.
+    bright side. `behind_border` are the curves behind a border of stated softness, if there is one.
     """
 
     trimmed: EdgePixels
     fit: EdgeFit
     before: Floats
     behind: Floats
+    behind_border: Response | None = None
 
     @classmethod
-    def of(cls, trimmed: EdgePixels, fit: EdgeFit, last_px: float = 0.0) -> CheckData:
+    def of(
+        cls,
+        trimmed: EdgePixels,
+        fit: EdgeFit,
+        last_px: float = 0.0,
+        behind_border: Response | None = None,
+    ) -> CheckData:
         """Check data of a fit whose last step lies `last_px` behind its first."""
-        return cls(trimmed, fit, -fit.distance_px, fit.distance_px - last_px)
+        return cls(trimmed, fit, -fit.distance_px, fit.distance_px - last_px, behind_border)
+
+    @property
+    def sensor(self) -> Response:
+        """The curves of the sensor: those of the image, a stated border divided out."""
+        return self.fit.response if self.behind_border is None else self.behind_border
 
     @property
     def rows(self) -> Floats:

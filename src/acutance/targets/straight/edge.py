@@ -307,13 +307,15 @@ def _measurement(
 ) -> StraightMeasurement:
     """The measurement, its line in pixels of the whole image."""
     fit = replace(fit, response=described(fit.response, fit.line, region, options.rer_centre))
-    # The checks compare curves with pixels: they read those of the image.
-    data = CheckData.of(trimmed, fit)
     stated = stated_target(options, fit.response.gsd_m)
+    transfer = of_stated_target(fit.response, stated)
+    # The checks compare curves with pixels: they read those of the image, but for two that ask
+    # what a sensor can be.
+    data = CheckData.of(trimmed, fit, behind_border=transfer if stated.has_border else None)
     return StraightMeasurement(
         kind="edge",
         method=method,
-        transfer=of_stated_target(fit.response, stated),
+        transfer=transfer,
         line=in_whole_image(fit.line, region),
         dark=fit.dark,
         bright=fit.bright,

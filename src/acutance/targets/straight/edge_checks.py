@@ -59,6 +59,7 @@ __all__ = [
     "lsf_width",
     "phases",
     "plateau",
+    "possible_sharpness",
     "sample_phases",
     "straightness",
 ]
@@ -145,7 +146,7 @@ def check_edge(
 def _of_the_image(region: RegionPixels, data: CheckData, limits: Limits) -> tuple[Check, ...]:
     """Whether a sensor made the pixels, and of which size they are."""
     return (
-        full_pixel([data.fit.response.mtf_nyquist], limits),
+        possible_sharpness(data, limits),
         stated_gsd(region.info, limits),
         *processing_checks(region, limits),
         removed_noise(data, limits),
@@ -247,10 +248,25 @@ def lsf_width(data: CheckData, limits: Limits) -> Check:
     """Whether the LSF is as wide as that of any detector: an image may hold other data than light.
 
     A square detector alone has a full width at half maximum (FWHM) of 0.7 to 1 px; the strongest
-    sharpening takes a third.
+    sharpening takes a third. That of the sensor is asked for, a stated border divided out.
     """
     value = data.fwhm_px
-    return answer("lsf_width_px", value, f"the LSF is {value:.2f} px wide at half maximum", limits)
+    found = f"the LSF is {value:.2f} px wide at half maximum"
+    sensor_px = data.sensor.fwhm_px.value
+    if data.behind_border is None or not sensor_px < value:
+        return answer("lsf_width_px", value, found, limits)
+    return answer(
+        "lsf_width_px", sensor_px,
+        f"{found}, and {sensor_px:.2f} px without the stated softness of the border", limits,
+        advice="no detector is that narrow: the border is sharper than stated; check the softness, "
+        "and the GSD",
+    )  # fmt: skip
+
+
+def possible_sharpness(data: CheckData, limits: Limits) -> Check:
+    """Whether a sensor whose pixels touch can be that sharp, a stated border divided out."""
+    with_border = None if data.behind_border is None else data.fit.response.mtf_nyquist
+    return full_pixel([data.sensor.mtf_nyquist], limits, with_border=with_border)
 
 
 def lsf_narrow(data: CheckData, limits: Limits) -> Check:

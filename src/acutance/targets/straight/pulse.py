@@ -291,8 +291,9 @@ def _measurement(
     """The measurement, its line in pixels of the whole image."""
     fit, width, height_ratio, prf_fwhm_px = found
     fit = replace(fit, response=described(fit.response, fit.line, region, options.rer_centre))
-    data = CheckData.of(trimmed, fit, width.value)
     stated = stated_target(options, fit.response.gsd_m)
+    transfer = of_stated_target(fit.response, stated)
+    data = CheckData.of(trimmed, fit, width.value, transfer if stated.has_border else None)
 
     def answers() -> tuple[Check, ...]:
         return check_pulse(
@@ -305,7 +306,7 @@ def _measurement(
     return StraightMeasurement(
         kind="pulse",
         method=method,
-        transfer=of_stated_target(fit.response, stated),
+        transfer=transfer,
         line=in_whole_image(fit.line, region),
         dark=trimmed.sign * fit.dark,
         bright=trimmed.sign * fit.bright,

@@ -11,7 +11,6 @@ from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer, limit_of
-from acutance.targets.full_pixel import full_pixel
 from acutance.targets.processing_checks import PROCESSING_CHECKS, processing_checks
 from acutance.targets.region import RegionPixels, stated_gsd, undeclared_fill
 from acutance.targets.straight.check_data import CheckData, ratio_in_words
@@ -22,6 +21,7 @@ from acutance.targets.straight.edge_checks import (
     lsf_width,
     phases,
     plateau,
+    possible_sharpness,
     straightness,
 )
 from acutance.targets.straight.fit_pulse import PulsePixels
@@ -125,7 +125,7 @@ def check_pulse(
         saturation(region, values, data, limits, ("before", "behind")),
         undeclared_fill([region.fill], limits),
         quantisation(region, values, data, limits),
-        full_pixel([data.fit.response.mtf_nyquist], limits),
+        possible_sharpness(data, limits),
         stated_gsd(region.info, limits),
         *processing_checks(region, limits),
         _nonlinearity(region, data, limits, width.value, height_ratio.value),

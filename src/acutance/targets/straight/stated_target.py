@@ -100,6 +100,11 @@ class StatedTarget:
         return border_gain(freq_cpp, self.variance_px2.value)[0]
 
     @property
+    def has_border(self) -> bool:
+        """Whether a softness of the border was stated that is not 0 for certain."""
+        return self.variance_px2.value > 0
+
+    @property
     def variance_px2(self) -> Estimate:
         """Variance of the borders' profile, pixels squared."""
         if self.softness_px is None:
