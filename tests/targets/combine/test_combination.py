@@ -239,6 +239,13 @@ def _without_deviations(plane):
         (lambda d: _without_deviations(d[0]["plane"]), "no standard deviations"),
         (lambda d: d[0]["image"].update(pixel_gsd_m=[2.8, 2.8]), "different pixels"),
         (lambda d: d[0]["image"].update(along_track="x"), "with the same axis along track"),
+        (
+            lambda d: (
+                d[0]["image"].update(band=3, band_name="red", path="p.tif")
+                or d[1]["image"].update(band=1, path="./p.tif")
+            ),
+            r"one is of band 3 \(red\) and two of band 1 of ./p.tif: each band has an MTF",
+        ),
         (lambda d: d[0].update(kind="combined"), "a combination already"),
         (
             lambda d: d[0].update(kind="biresolution", options={"reference_given": False}),

@@ -25,6 +25,7 @@ from acutance.targets.combine.inputs import (
     read_inputs,
     without,
 )
+from acutance.targets.combine.one_band import require_one_band
 from acutance.targets.combine.options import CombineOptions
 from acutance.targets.combine.pixel_size import common_gsd, require_one_product, without_gsd
 from acutance.targets.options import chosen_options
@@ -69,7 +70,8 @@ def combine(
     ------
     OptionError
         If there is only one measurement or one direction, or they do not belong together: other
-        pixels, the same result twice, a ratio instead of an MTF; or none has a name of `leave_out`.
+        pixels, several bands of an image, the same result twice, a ratio instead of an MTF; or none
+        has a name of `leave_out`.
 
     Examples
     --------
@@ -80,6 +82,7 @@ def combine(
     chosen = chosen_options(options, CombineOptions)
     inputs = without(read_inputs(measurements, names), leave_out)
     _require_two(inputs)
+    require_one_band(inputs)
     gsd = Gsd.given(gsd_m)
     unknown = without_gsd(inputs) if gsd is None else ()
     if gsd is None:

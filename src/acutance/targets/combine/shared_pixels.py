@@ -17,7 +17,7 @@ from acutance.geometry.angles import axis_difference, direction_difference
 from acutance.geometry.line import Line
 from acutance.targets.combine.inputs import MeasuredInput
 
-__all__ = ["pairs_of_same_pixels"]
+__all__ = ["is_same_file", "pairs_of_same_pixels"]
 
 _SAME_PLACE_PX: Final = 3.0
 _SAME_LINE_DEG: Final = 5.0
@@ -36,11 +36,12 @@ def pairs_of_same_pixels(inputs: Sequence[MeasuredInput]) -> list[str]:
         f"{other.name} and {one.name}"
         for i, one in enumerate(inputs)
         for other in inputs[:i]
-        if _is_same_file(one, other) and _share_pixels(one, other)
+        if is_same_file(one, other) and _share_pixels(one, other)
     ]
 
 
-def _is_same_file(one: MeasuredInput, other: MeasuredInput) -> bool:
+def is_same_file(one: MeasuredInput, other: MeasuredInput) -> bool:
+    """Whether two measurements are of one file, however it was named."""
     paths = one.image.path, other.image.path
     # Two runs write the name of one file as they were given it.
     return None not in paths and len(set(map(os.path.realpath, filter(None, paths)))) == 1
