@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from test_figures import outside, overlaps, texts
 
+from acutance.optics import preset
 from acutance.report import plan_text, study_figure, study_text
 from acutance.report.studies.study import STUDY_FIGURES
 from acutance.studies import (
@@ -123,3 +124,28 @@ def test_texts_set_answers_beside_the_printed_ones(results):
     assert "3 simulated images" in plan
     widths = {len(line) for line in plan.splitlines() if line.strip().startswith("width ")}
     assert len(widths) == 1
+
+
+def test_the_angle_figure_shows_an_estimate_that_is_too_high():
+    """The report's sensor is under-estimated; others are not."""
+    options = AngleOptions(angles_deg=(3.0, 5.0, 8.0), places=2, sensor=preset("ikonos-like"))
+    result = run_study("angle", options, ALONE)
+    assert result.table["published_percent"].max() > 0
+    figure = study_figure(result)
+    assert "Where the over-estimate comes from" in texts(figure)
+    for axes in figure.axes:
+        low, high = axes.get_ylim()
+        for line in axes.lines:
+            values = np.asarray(line.get_ydata(), dtype=float)
+            known = values[np.isfinite(values)]
+            assert ((known >= low) & (known <= high)).all(), line.get_label()
+
+
+def test_a_width_at_a_zero_of_the_spectrum_leaves_the_others_readable():
+    """A pulse of 4 px has none of Nyquist's frequency: the published ratio divides by nothing."""
+    result = run_study("width", WidthOptions(widths_px=(2.8, 3.0, 4.0)), ALONE)
+    figure = study_figure(result)
+    assert max(axes.get_ylim()[1] for axes in figure.axes[:3]) < 5
+    assert "published: 1 beyond the frame" in texts(figure)
+    assert not overlaps(figure)
+    assert "to more than +1000 %" in study_text(result)

@@ -31,6 +31,7 @@ _REPORTED_CPP = (0.3, 0.4, NYQUIST_CPP)
 
 
 _WORDS = {"measured": "stated", "true": "true"}
+_LARGE_PERCENT = 1000.0
 
 
 @dataclass(frozen=True)
@@ -190,7 +191,7 @@ def _findings(table: Table) -> tuple[Finding, ...]:
                     f"published_{error}_{freq:g}_percent",
                     float(np.max(np.abs(change))),
                     f"a wrong {_WORDS[error]} width: the published MTF at {freq:g} c/px changes by "
-                    f"{change.min():+.1f} to {change.max():+.1f} %",
+                    f"{_per_cent(change.min())} to {_per_cent(change.max())} %",
                 )
             )
     off = float(np.max(np.abs(table["ours_width_px"] - table["true_px"])))
@@ -202,3 +203,8 @@ def _findings(table: Table) -> tuple[Finding, ...]:
         Finding("ours_worst", worst, f"and the MTF at these frequencies to {worst:.5f}"),
     ]
     return tuple(found)
+
+
+def _per_cent(change: float) -> str:
+    """A change in words: at a zero of the pulse's spectrum the published ratio has no bounds."""
+    return f"{change:+.1f}" if change < _LARGE_PERCENT else f"more than +{_LARGE_PERCENT:.0f}"

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from acutance.curves.grid import Floats
     from acutance.studies import StudyResult, Table
 
 __all__ = ["angle_figure"]
@@ -64,7 +65,8 @@ def _draw_values(axes: Axes, table: Table, trials: Table) -> None:
     axes.plot(angle, table["cosine_corrected"], color=PURPLE, linewidth=1.2, dashes=(5, 2),
               label="published, width divided by the cosine")  # fmt: skip
     axes.plot(angle, table["published"], color=VERMILION, label=ESTIMATOR_WORDS["published"])
-    low, high = float(np.min(table["published"])), float(np.max(table["truth"]))
+    drawn = ("published", "truth", "ours", "order_4_normal", "cosine_corrected")
+    low, high = _range(*(table[name] for name in drawn), trials["published"])
     axes.set(
         xlabel="angle of the pulse [°]", ylabel="MTF at Nyquist",
         title="MTF at Nyquist without noise", ylim=(low - 0.012, high + 0.008),
@@ -82,9 +84,22 @@ def _draw_terms(axes: Axes, table: Table) -> None:
     axes.plot([], [], color=INK, linewidth=1, dashes=(2, 2), label="closed form of each")
     axes.plot(angle, table["published_percent"], color=VERMILION, label="all of it: published")
     axes.plot(angle, table["ours_percent"], color=BLUE, linewidth=1.3, label="ours")
-    low = float(np.min(table["published_percent"]))
+    low, high = _range(
+        *(table[f"{name}_percent"] for name in ("published", "ours", *_TERMS)),
+        *(table[name] for name in table.columns if name.endswith("_predicted_percent")),
+    )
+    span = high - low
+    under = float(np.nanmean(table["published_percent"])) < 0
     axes.set(
         xlabel="angle of the pulse [°]", ylabel="error of the MTF at Nyquist [%]",
-        title="Where the under-estimate comes from", ylim=(1.12 * low, 1.0),
+        title=f"Where the {'under' if under else 'over'}-estimate comes from",
+        # An under-estimate leaves room for the legend by itself.
+        ylim=(low - (0.12 if under else 0.8) * span, high + 0.1 * span),
     )  # fmt: skip
     axes.legend(loc="lower left")
+
+
+def _range(*columns: Floats) -> tuple[float, float]:
+    """From the least to the largest number of some columns."""
+    values = np.concatenate(columns)
+    return float(np.nanmin(values)), float(np.nanmax(values))

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 __all__ = ["width_figure"]
 
 _ENDS = (VERMILION, GREEN)
+_MAX_SHOWN = 2.0
+"""Larger values at Nyquist, as shares of the truth, are beyond the frame."""
 
 
 def width_figure(result: StudyResult) -> Figure:
@@ -75,8 +77,15 @@ def _draw_nyquist(axes: Axes, rows: Table, column: str) -> None:
     closed = rows["published_0.5"][nominal] * rows["ratio_gain_0.5"]
     axes.plot(width, closed, color=INK, linewidth=1, dashes=(2, 2), label="closed form")
     other = "true" if column == "stated_px" else "stated"
-    values = np.concatenate([rows["published_0.5"], rows["truth_0.5"]])
+    published = rows["published_0.5"]
+    # At a zero of the pulse's spectrum the ratio has no bounds.
+    top = _MAX_SHOWN * float(np.max(rows["truth_0.5"]))
+    beyond = int(np.sum(published > top))
+    values = np.concatenate([np.minimum(published, top), rows["truth_0.5"]])
     span = float(np.ptp(values))
+    if beyond:
+        axes.text(0.98, 0.97, f"published: {beyond} beyond the frame", transform=axes.transAxes,
+                  ha="right", va="top", fontsize=8.5)  # fmt: skip
     axes.set(
         xlabel=f"{words[column]} [px]", ylabel="MTF at Nyquist",
         title=f"{words[column].capitalize()} varied, {other} {rows[f'{other}_px'][0]:g} px",
