@@ -236,8 +236,13 @@ def test_a_band_without_a_shift_has_the_reason_in_every_output(bands, few_forms,
 @pytest.mark.parametrize("noise", [0.0, 1.0])
 def test_a_band_without_edges_is_rejected_and_the_others_stay(bands, noise, few_forms, undrawn):
     empty = np.random.default_rng(1).normal(100, noise, bands[0].shape)
+    seen = []
     with few_forms():
-        several = ac.scan_bands(np.array([bands[0], empty]))
+        several = ac.scan_bands(
+            np.array([bands[0], empty]), progress=lambda *numbers: seen.append(numbers)
+        )
+    # One window, and then each band, whose fit takes most of the time.
+    assert seen == [(1, 3), (2, 3), (3, 3)]
     assert list(several.scenes) == ["1"]
     (rejected,) = several.rejected
     assert rejected.values == {"band": "2"}

@@ -152,8 +152,10 @@ def scan_bands(
     gsd_m : float or Gsd, optional
         Ground sampling distance in metres, instead of the image's own.
     options : ScanOptions, optional
-    workers, scheduler, keep, progress : optional
+    workers, scheduler, keep : optional
         As of `acutance.scan_scene`.
+    progress : function of (done, in all), optional
+        Of windows and then of bands, whose sensors are fitted one after the other.
 
     Returns
     -------
@@ -179,9 +181,10 @@ def scan_bands(
     first = next(iter(images.values()))
     box, region = part_of(first, roi)
     require_statement(chosen, gsd_of_part(first, box, gsd))
+    told = None if progress is None else _WindowsAndBands(progress, len(images))
     found = scan_windows(
         list(images.values()), box, region, gsd=gsd, options=chosen, workers=workers,
-        scheduler=scheduler, keep=keep, progress=progress,
+        scheduler=scheduler, keep=keep, progress=told,
     )  # fmt: skip
     scenes: dict[str, SceneMeasurement] = {}
     rejected: list[Rejected] = []
@@ -193,12 +196,28 @@ def scan_bands(
         except FewEdgesError as error:
             rejected.append(Rejected("fit", str(error), _named(name, one)))
             refused[name] = error.edges
+        if told is not None:
+            told.band_is_done(len(found), place + 1)
     if not scenes:
         whose = "the band" if len(images) == 1 else f"none of the {len(images)} bands"
         not_measured = "could not be measured" if len(images) == 1 else "could be measured"
         raise FewEdgesError(f"{whose} {not_measured}: {rejected[0].reason}", BandEdges(refused))
     shifts, unshifted = _shifts(scenes)
     return BandScenes(scenes, shifts, tuple(rejected), unshifted)
+
+
+@dataclass(frozen=True)
+class _WindowsAndBands:
+    """Progress of windows and bands in one count."""
+
+    progress: Progress
+    bands: int
+
+    def __call__(self, done: int, windows: int) -> None:
+        self.progress(done, windows + self.bands)
+
+    def band_is_done(self, windows: int, done: int) -> None:
+        self.progress(windows + done, windows + self.bands)
 
 
 def _named(band: str, image: Image) -> dict[str, str]:
