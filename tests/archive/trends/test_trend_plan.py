@@ -62,6 +62,19 @@ def test_trends_of_simulated_images_state_what_the_plan_says() -> None:
     assert plan_trend(steady, workers=1).designs[0].noticed <= 0.15
 
 
+@pytest.mark.parametrize("drift_per_year", [0.041, -0.041, 0.06])
+def test_the_least_drift_agrees_with_how_often_the_planned_one_is_noticed(
+    drift_per_year: float,
+) -> None:
+    """2.8 median deviations were the least before, and noticed in 64 to 74 % of the cases."""
+    options = TrendPlanOptions(
+        images_per_year=(6.0,), years=(3.0,), drift_per_year=drift_per_year, draws=40
+    )
+    (watch,) = plan_trend(options, workers=1).designs
+    assert (watch.least_drift <= abs(drift_per_year)) is (watch.noticed >= 0.8)
+    assert 2.8 * watch.bound < watch.least_drift < 5 * watch.bound
+
+
 def test_the_time_needed_is_between_the_planned_ones() -> None:
     plan = plan_trend(replace(THEORY, years=(1.0, 2.0, 3.0, 4.0, 5.0)))
     needed = plan.years_needed(48.0)
