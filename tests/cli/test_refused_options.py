@@ -79,6 +79,14 @@ def test_scenes_that_cannot_be_rendered(refused, folder, words, message):
         (("pulse", "--compare", "spline"), "compares spline with nothing"),
         (("edge", "--target-softness-px", "0.3+-nan"), "--target-softness-px is 0.3 ± nan: "),
         (("pulse", "--target-softness-m=-0.1"), "--target-softness-m is -0.1: a standard"),
+        (
+            ("edge", "--target-softness-m", "0.1+--0.2"),
+            "--target-softness-m 0.1+--0.2: its standard deviation is -0.2, below 0",
+        ),
+        (
+            ("pulse", "--target-softness-m", "0.1", "--target-softness-px", "0.2"),
+            "acutance: --target-softness-m and --target-softness-px state the same thing: give one",
+        ),
         (("points", "--min-snr", "nan"), "--min-snr has to be a number, found nan"),
         (("scan", "--field", "0x0"), "places (--field) is 0 x 0: give 1 to 20"),
         (("scan", "--min-length", "nan"), "--min-length has to be a number, found nan"),

@@ -146,6 +146,8 @@ def parse_stated(option: str, text: str | None) -> Estimate | None:
         raise OptionError(
             f"{option} {text}: write a number, or one with its standard deviation (0.05+-0.02)"
         )
+    if numbers[1:] and numbers[1] < 0:
+        raise OptionError(f"{option} {text}: its standard deviation is {numbers[1]:g}, below 0")
     return Estimate(*numbers)
 
 

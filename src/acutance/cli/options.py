@@ -311,6 +311,10 @@ class SoftnessOptions:
     def softness(self) -> dict[str, Any]:
         """Fields of the options of an edge, a pulse or a scan."""
         metres, pixels = self.target_softness_m, self.target_softness_px
+        if metres is not None and pixels is not None:
+            raise OptionError(
+                "--target-softness-m and --target-softness-px state the same thing: give one"
+            )
         return {
             "target_softness_m": parse_stated("--target-softness-m", metres),
             "target_softness_px": parse_stated("--target-softness-px", pixels),
