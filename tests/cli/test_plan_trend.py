@@ -31,6 +31,15 @@ def test_trends_of_simulated_images_are_asked(acutance):
     assert "100 %" in done.stdout
 
 
+def test_a_deviation_below_the_best_of_a_line_is_explained(acutance):
+    """Of six images a trend states less than a line can know: it expects small drifts."""
+    words = "; of few images trends take a drift to be small, and state less"
+    for images, is_told in (("6", True), ("48", False)):
+        done = acutance("plan", "trend", "--images", images, "--years", "1", "--draws", "10",
+                        "--drift", "12%", "--workers", "1")  # fmt: skip
+        assert (words in done.stdout) is is_told
+
+
 def test_an_archive_says_what_its_images_are_like(acutance, place):
     one = ["--archive", place, "--metric", "rer", "--sensor", "KOMPSAT-3", "--orientation",
            "across"]  # fmt: skip

@@ -50,10 +50,16 @@ def trend_plan_text(plan: TrendPlan) -> str:
         if options.draws
         else "by theory alone: trends, which allow for steps, need more"
     )
+    # A trend takes drifts to be small beforehand, and little else says how large they are then.
+    few = (
+        "; of few images trends take a drift to be small, and state less"
+        if any(one.std < one.bound for one in plan.designs)
+        else ""
+    )
     return "\n\n".join([
         f"Plan of a watch for a drift of {_per_cent(options.drift_per_year)} a year\n  {assumed}",
         align_columns(rows, "rrrrrrr")
-        + "\n  at best: a line through normal scatter, nothing else allowed for"
+        + f"\n  at best: a line through normal scatter, nothing else allowed for{few}"
         f"\n  least drift: noticed in 8 of 10 cases, {simulated}",
         "\n".join(_answer(plan, pace) for pace in dict.fromkeys(options.images_per_year)),
     ])  # fmt: skip
