@@ -97,7 +97,7 @@ def test_a_killed_scan_goes_on_where_it_was(path, whole, tmp_path, workers):
     same(resumed, whole)
 
 
-def test_an_interrupt_says_where_the_windows_are_kept(path, whole, tmp_path):
+def test_an_interrupt_says_where_the_windows_are_kept(path, whole, tmp_path, monkeypatch):
     kept = tmp_path / "scan.parts"
 
     def interrupt(done, total):
@@ -109,6 +109,17 @@ def test_an_interrupt_says_where_the_windows_are_kept(path, whole, tmp_path):
     with pytest.raises(KeyboardInterrupt, match="2 of 9 windows were done and are lost"):
         ac.scan_scene(path, options=OPTIONS, progress=interrupt)
     same(ac.scan_scene(path, options=OPTIONS, keep=kept), whole)
+
+    def interrupted(*arguments):
+        raise KeyboardInterrupt
+
+    # The fit that follows takes longer than the windows of many a scene.
+    with monkeypatch.context() as patched:
+        patched.setattr("acutance.scan.scene._fit", interrupted)
+        with pytest.raises(KeyboardInterrupt, match=r"9 of 9 windows are kept in .*scan\.parts"):
+            ac.scan_scene(path, options=OPTIONS, keep=kept)
+        with pytest.raises(KeyboardInterrupt, match="9 of 9 windows were done and are lost"):
+            ac.scan_bands(path, options=OPTIONS)
     seen = []
     same(ac.scan_scene(path, options=OPTIONS, keep=kept, progress=lambda *n: seen.append(n)), whole)
     assert seen == [(9, 9)]

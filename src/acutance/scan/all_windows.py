@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -20,7 +20,7 @@ from acutance.scan.window_edges import WindowEdges, scan_window
 from acutance.scan.windows import Window, windows
 from acutance.targets.region import RoiLike, chosen_region
 
-__all__ = ["Progress", "part_of", "scan_windows"]
+__all__ = ["Progress", "answered_fit", "part_of", "scan_windows"]
 
 Found = list[WindowEdges]
 """The edges of a window: of every band."""
@@ -128,7 +128,8 @@ def _all_windows(
     try:
         run([parts[place] for place in todo], add)
     except KeyboardInterrupt:
-        raise KeyboardInterrupt(_interruption(len(done), len(parts), kept)) from None
+        path = None if kept is None else kept.path
+        raise KeyboardInterrupt(_interruption(len(done), len(parts), path)) from None
     return [done[place] for place in range(len(parts))]
 
 
@@ -181,13 +182,30 @@ def _on_cluster(images: Sequence[Image]) -> list[Image]:
     return [named_from_root(image) for image in images]
 
 
-def _interruption(done: int, total: int, kept: KeptWindows | None) -> str:
+@contextmanager
+def answered_fit(windows: int, keep: str | os.PathLike[str] | None) -> Iterator[None]:
+    """Say of all windows what an interrupt leaves of them, while sensors are fitted to their edges.
+
+    Parameters
+    ----------
+    windows : int
+        How many there are.
+    keep : path, optional
+        The file that keeps them.
+    """
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(_interruption(windows, windows, keep)) from None
+
+
+def _interruption(done: int, total: int, kept: str | os.PathLike[str] | None) -> str:
     if kept is None:
         return (
             f"interrupted: {done} of {total} windows were done and are lost; name a file that "
             "keeps them (keep, --keep) and a scan goes on where it was"
         )
     return (
-        f"interrupted: {done} of {total} windows are kept in {kept.path}; run the same command "
+        f"interrupted: {done} of {total} windows are kept in {kept}; run the same command "
         "again to go on"
     )

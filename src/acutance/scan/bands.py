@@ -16,7 +16,7 @@ from acutance.curves.short_repr import ShortRepr
 from acutance.errors import FewEdgesError, ImageError, NoEdgeError
 from acutance.raster import Gsd, Image, open_bands
 from acutance.raster.band_label import label_band
-from acutance.scan.all_windows import Progress, part_of, scan_windows
+from acutance.scan.all_windows import Progress, answered_fit, part_of, scan_windows
 from acutance.scan.band_shift import BandShift, band_shift
 from acutance.scan.edge_table import EdgeTable
 from acutance.scan.options import ScanOptions
@@ -192,7 +192,8 @@ def scan_bands(
     for place, (name, one) in enumerate(images.items()):
         try:
             own = [windows[place] for windows in found]
-            scenes[name] = measured_scene(one, box, gsd, chosen, own, region)
+            with answered_fit(len(found), keep):
+                scenes[name] = measured_scene(one, box, gsd, chosen, own, region)
         except FewEdgesError as error:
             rejected.append(Rejected("fit", str(error), _named(name, one)))
             refused[name] = error.edges

@@ -14,7 +14,7 @@ from acutance.errors import FewEdgesError, NoDataError
 from acutance.geometry.angles import axis_difference
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Box, Gsd, Image, Region, open_image
-from acutance.scan.all_windows import Progress, part_of, scan_windows
+from acutance.scan.all_windows import Progress, answered_fit, part_of, scan_windows
 from acutance.scan.band_pieces import UNSEEN
 from acutance.scan.checks import check_scene
 from acutance.scan.edge_likelihoods import EdgeLikelihoods
@@ -115,7 +115,8 @@ def scan_scene(
         keep=keep, progress=progress,
     )  # fmt: skip
     own = [one for (one,) in found]
-    return measured_scene(source, box, gsd, chosen, own, region)
+    with answered_fit(len(found), keep):
+        return measured_scene(source, box, gsd, chosen, own, region)
 
 
 def edges_of_scene(image: Image) -> SceneEdges:
