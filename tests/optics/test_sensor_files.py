@@ -131,6 +131,7 @@ def test_metres_use_the_pixel_of_their_own_axis(block, expected):
         ('gsd_m = "a"', r"gsd_m is 'a'|at least one"),
         ("gsd_m = -1\n[[block]]\nkind = 'Detector'", "the sensor: gsd_m is -1"),
         ("[[block]]\nkind = 'Gauss'", "block 1: kind is 'Gauss'"),
+        ("[[block]]\nblock = 'Gaussian'", "block 1: it has no kind, it has to be one of Gaussian"),
         ("[[block]]\nkind = 'Rescaled'", "kind is 'Rescaled'"),
         ("[[block]]\nkind = 'Gaussian'", "sigma_px has to be given"),
         ("[[block]]\nkind = 'Gaussian'\nsigma_m = 0.2", "needs gsd_m"),

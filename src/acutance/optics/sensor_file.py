@@ -253,7 +253,8 @@ def _block(table: Any, pixel_m: tuple[float, float] | None, origin: str) -> Bloc
     kind = table.get("kind") if isinstance(table, Mapping) else None
     if kind not in BLOCKS or kind == "Rescaled":
         known = ", ".join(name for name in BLOCKS if name != "Rescaled")
-        raise ModelError(f"{origin}: kind is {kind!r}, it has to be one of {known}")
+        found = "it has no kind" if kind is None else f"kind is {kind!r}"
+        raise ModelError(f"{origin}: {found}, it has to be one of {known}")
     origin = f"{origin} ({kind})"
     parameters = inspect.signature(BLOCKS[kind].make).parameters
     given = {key: value for key, value in table.items() if key not in ("kind", "source")}
