@@ -42,14 +42,15 @@ def full_pixel(
     """
     surest = max(mtf_nyquist, key=_at_least)
     least = _at_least(surest)
-    found = (
-        f"the MTF at Nyquist is {surest}, surely (by {_SURE:.0f} standard deviations) above "
-        f"{least:.2f}; that of a full pixel without any optics is .64"
+    sure = (
+        f"{surest}, surely (by {_SURE:.0f} standard deviations) above {least:.2f}; that of a full "
+        "pixel without any optics is .64"
     )
+    found = f"the MTF at Nyquist is {sure}"
     as_asked = answer("full_pixel", least, found, limits, caution=caution)
     if with_border is None or as_asked.passed or _at_least(with_border) > as_asked.limit:
         return as_asked
-    found = f"behind the border's stated softness {found}; with it it is {with_border}"
+    found = f"the MTF at Nyquist is {with_border}, and behind the border's stated softness {sure}"
     return answer("full_pixel", least, found, limits, caution=0.0, advice=_TOO_SOFT)
 
 
