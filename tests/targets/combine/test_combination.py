@@ -232,6 +232,10 @@ def _without_deviations(plane):
         (lambda d: d[0].update(schema="acutance/truth/1"), "acutance/truth/1, no measurement"),
         (lambda d: d[0].update(schema="other"), "no measurement of acutance"),
         (lambda d: d[0].pop("image"), "cannot be read as a measurement"),
+        (
+            lambda d: d[0]["image"].update(band="two"),
+            "^one: the document cannot be read as a measurement .the image of a measurement",
+        ),
         (lambda d: d[0].update(plane={"normal_deg": [0]}), "cannot be read"),
         (lambda d: d[0]["plane"]["otf_real"].pop(), "cannot be read"),
         (lambda d: d[0]["plane"].update(normal_deg=[float("nan")]), "not finite"),

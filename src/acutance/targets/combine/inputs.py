@@ -205,7 +205,10 @@ def _read(document: Mapping[str, Any], origin: str) -> Record:
     try:
         return Record.from_dict(document)
     except OptionError as error:
-        raise OptionError(f"{origin} cannot be read as a measurement: {error}") from error
+        words = "cannot be read as a measurement"
+        # The error may say it by itself.
+        told = "" if words in str(error) else f" {words}"
+        raise OptionError(f"{origin}{told}: {error}") from error
 
 
 def _input(record: Record, origin: str, name: str | None) -> MeasuredInput:
