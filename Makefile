@@ -10,9 +10,10 @@ $(VENV)/.installed: pyproject.toml
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[test,lint]"
 	touch $@
 
+# In lots of at most 200 tests: one core is not left with all the long ones of the end.
 test: $(VENV)/.installed
 	$(MAKE) --jobs=2 lint loops modules
-	$(BIN)/python -m pytest -n 2
+	$(BIN)/python -m pytest -n 2 --maxschedchunk 200
 
 lint: $(VENV)/.installed
 	$(BIN)/ruff check src tests benchmarks docs
