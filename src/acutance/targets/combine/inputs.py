@@ -205,10 +205,7 @@ def _read(document: Mapping[str, Any], origin: str) -> Record:
     try:
         return Record.from_dict(document)
     except OptionError as error:
-        words = "cannot be read as a measurement"
-        # The error may say it by itself.
-        told = "" if words in str(error) else f" {words}"
-        raise OptionError(f"{origin}{told}: {error}") from error
+        raise OptionError(f"{origin}: {error}") from error
 
 
 def _input(record: Record, origin: str, name: str | None) -> MeasuredInput:
