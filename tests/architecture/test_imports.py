@@ -194,6 +194,11 @@ def test_no_module_uses_pyplot() -> None:
     assert not named
 
 
+def test_no_module_uses_the_distributions_of_scipy() -> None:
+    """They take most of a second to load; `scipy.special` has all that is needed of them."""
+    assert not [str(found) for found in all_imports() if found.target.startswith("scipy.stats")]
+
+
 def _names(text: str) -> set[str]:
     """Every name and attribute that code uses."""
     tree = ast.parse(text)

@@ -5,17 +5,19 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cache
-from typing import Final, Literal, get_args
+from typing import TYPE_CHECKING, Final, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import CubicSpline
 from scipy.special import j0
 
 from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.errors import ModelError
 from acutance.optics.block import require
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 __all__ = ["Galaxy", "Profile"]
 
@@ -95,6 +97,8 @@ def _bulge(freq: Floats) -> Floats:
 @cache
 def _bulge_table() -> CubicSpline:
     """The Hankel transform of the profile over the logarithm of the frequency."""
+    from scipy.interpolate import CubicSpline
+
     # In t = (r / r_e)^(1/4) the integrand is smooth; its fastest wave takes 10 steps a period.
     begin, edge = _TAPER
     steps = round(40 * edge * _MAX_FREQ)

@@ -9,12 +9,13 @@ are not in the image.
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
-from scipy.stats import norm
+from scipy.special import ndtr
 
 from acutance.curves.grid import Floats
 from acutance.numerics.noise import smallest_step
@@ -91,9 +92,10 @@ def _counts(numbers: Floats) -> Floats | None:
     return np.array([float(often[found == one].sum()) for one in offsets])
 
 
+@cache
 def _log_shares() -> Floats:
     """Logarithm of the share of pixels of every number, (noise, place, number)."""
     borders = np.arange(-_REACH, _REACH + 2) - 0.5
-    below = norm.cdf((borders - _PLACES[:, None]) / _NOISE_STEPS[:, None, None])
+    below = ndtr((borders - _PLACES[:, None]) / _NOISE_STEPS[:, None, None])
     # Some pixels are no noise: grass, hot pixels.
     return np.asarray(np.log(np.diff(below, axis=2) + 1e-4))
