@@ -8,7 +8,7 @@ fan too. The spokes' phase along the rings then moves the centre to where the ri
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -17,8 +17,9 @@ from scipy import ndimage
 from acutance.curves.grid import Floats
 from acutance.errors import NoStarError
 from acutance.geometry.star_geometry import Flags, SiemensStar
+from acutance.targets.periodic.part_waves import PartWaves
 from acutance.targets.periodic.star_extent import extent_of
-from acutance.targets.periodic.star_rings import members_of, rings_of
+from acutance.targets.periodic.star_rings import rings_of
 from acutance.targets.periodic.star_strength import PixelsAbout
 from acutance.targets.periodic.tuned import MIN_STAR_STRENGTH
 
@@ -211,6 +212,34 @@ def _farthest(usable: Flags, row: float, col: float) -> float:
     return float(np.quantile(np.hypot(rows - row, cols - col), 0.98))
 
 
+def _cells(rings: Sequence[tuple[float, Floats, Floats]], cycles: int) -> Floats:
+    """Radius, direction, phasor and weight of the wave in cells of two cycles by a ring, (5, n).
+
+    Parameters
+    ----------
+    rings : sequence of (radius, angles, values)
+    cycles : int
+    """
+    if not rings:
+        return np.zeros((5, 0))
+    sectors = max(round(cycles / _SECTOR_CYCLES), 1)
+    count = len(rings) * sectors
+    ring = np.repeat(np.arange(len(rings)), [angle.size for _, angle, _ in rings])
+    angle, value = (np.concatenate(column) for column in list(zip(*rings, strict=True))[1:])
+    cell = ring * sectors + ((angle + math.pi) / (2 * math.pi) * sectors).astype(np.intp) % sectors
+    waves = PartWaves.of(cell, cycles * angle, value - float(np.mean(value)), count)
+    low, high = np.full(count, np.inf), np.full(count, -np.inf)
+    np.minimum.at(low, cell, angle)
+    np.maximum.at(high, cell, angle)
+    kept = waves.has_enough & (high - low >= 2.0 / cycles)
+    sizes, cosine, sine = waves.sizes[kept], waves.cosine[kept], waves.sine[kept]
+    power = cosine**2 + sine**2
+    share = power / (power + 2 * waves.rest[kept] / sizes + 1e-300)
+    radius = np.repeat([one for one, _, _ in rings], sectors)[kept]
+    middle = np.bincount(cell, angle, minlength=count)[kept] / sizes
+    return np.array([radius, middle, cosine, -sine, power * share**4])
+
+
 def _agreed(smooth: Floats, usable: Flags, star: SiemensStar) -> SiemensStar:
     """Move centre and phase to where the spokes have one phase, in all rings and directions.
 
@@ -218,25 +247,10 @@ def _agreed(smooth: Floats, usable: Flags, star: SiemensStar) -> SiemensStar:
     off by (dx, dy) differs by ``k (dx sin phi - dy cos phi) / r``: linear least squares.
     """
     k = star.cycles
-    sectors = max(round(k / _SECTOR_CYCLES), 1)
-    table = []
-    for radius, angle, value in rings_of(
-        smooth, usable, star.row, star.col, star.radius_at(_COARSE_CPP), star.rim_px
-    ):
-        sector = ((angle + math.pi) / (2 * math.pi) * sectors).astype(np.intp) % sectors
-        for own in members_of(sector, np.ones(angle.size, bool), sectors):
-            if own.size < 9 or np.ptp(angle[own]) < 2.0 / k:
-                continue
-            turned = k * angle[own]
-            design = np.stack([np.ones(own.size), np.cos(turned), np.sin(turned)], axis=1)
-            fit, *_ = np.linalg.lstsq(design, value[own], rcond=None)
-            rest = value[own] - design @ fit
-            power = fit[1] ** 2 + fit[2] ** 2
-            share = power / (power + 2 * float(np.mean(rest**2)) + 1e-300)
-            table.append((radius, float(np.mean(angle[own])), fit[1], -fit[2], power * share**4))
-    if len(table) < 6:
+    rings = rings_of(smooth, usable, star.row, star.col, star.radius_at(_COARSE_CPP), star.rim_px)
+    radius, angle, real, imaginary, weight = _cells(rings, k)
+    if radius.size < 6:
         raise NoStarError("the rings of the star hold too few pixels: choose a larger region")
-    radius, angle, real, imaginary, weight = np.array(table).T
     phasor = (real + 1j * imaginary) / np.maximum(np.hypot(real, imaginary), 1e-300)
     weight *= radius**2
     alpha = float(np.angle(np.sum(weight * phasor)))

@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.geometry.star_geometry import Flags
+from acutance.targets.periodic.part_waves import PartWaves
 from acutance.targets.periodic.star_rings import MIN_RING_PIXELS, RING_STEP_PX
 
 __all__ = ["PixelsAbout"]
 
 _RINGS = 12
 """So many rings are looked at, or up to twice as many, from the inside out."""
-_MIN_PART_PIXELS = 9
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,21 +79,9 @@ class PixelsAbout:
 
 def _explained(part: NDArray[np.intp], turned: Floats, value: Floats, count: int) -> Floats:
     """Sum of squares of every part's wave, less what noise makes; 0 of parts of few pixels."""
-    sizes = np.bincount(part, minlength=count)
-    enough = sizes >= _MIN_PART_PIXELS
-    design = np.stack([np.ones(part.size), np.cos(turned), np.sin(turned)])
-
-    def sums(values: Floats) -> Floats:
-        return np.asarray(np.bincount(part, values, minlength=count))
-
-    gram = np.array([[sums(one * other) for other in design] for one in design]).T[enough]
-    gram += 1e-9 * sizes[enough, None, None] * np.eye(3)
-    seen = np.array([sums(one * value) for one in design]).T[enough]
-    fit = np.zeros((3, count))
-    fit[:, enough] = np.linalg.solve(gram, seen[..., None])[..., 0].T
-    own = fit[:, part]
-    wave = own[1] * design[1] + own[2] * design[2]
-    mean = sums(wave) / np.maximum(sizes, 1)
-    rest = sums((value - own[0] - wave) ** 2)
-    found = sums((wave - mean[part]) ** 2) - rest * 2 / np.maximum(sizes, 1)
-    return np.where(enough, np.maximum(found, 0.0), 0.0)
+    waves = PartWaves.of(part, turned, value, count)
+    sizes = np.maximum(waves.sizes, 1)
+    total = np.bincount(part, waves.wave, minlength=count)
+    squares = np.bincount(part, waves.wave**2, minlength=count)
+    found = squares - total**2 / sizes - waves.rest * 2 / sizes
+    return np.where(waves.has_enough, np.maximum(found, 0.0), 0.0)
