@@ -255,11 +255,11 @@ def test_help_loads_nothing_heavy(command: list[str]) -> None:
     assert not loaded & {"scipy", "matplotlib", "rasterio", "jinja2", "sqlalchemy"}
 
 
-def test_measuring_an_array_needs_no_file_library() -> None:
+def test_measuring_an_array_needs_no_library_of_files_or_figures() -> None:
     loaded = loaded_after(
         "import acutance as ac\n"
         "sensor = ac.Sensor([ac.optics.Gaussian(0.4), ac.optics.Detector()])\n"
-        "ac.measure_edge(ac.simulate.edge(sensor)[0])"
+        "ac.report.text(ac.measure_edge(ac.simulate.edge(sensor)[0]))"
     )
     assert "scipy" in loaded
     assert not loaded & {"rasterio", "matplotlib", "jinja2", "typer"}

@@ -6,8 +6,6 @@ import math
 from itertools import cycle
 from typing import TYPE_CHECKING
 
-from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
-
 from acutance.archive.counted import counted
 from acutance.archive.trends.trend_plan import NOTICED
 from acutance.curves.aligned_columns import align_columns
@@ -100,6 +98,8 @@ def trend_plan_figure(plan: TrendPlan) -> Figure:
     ----------
     plan : TrendPlan
     """
+    from matplotlib.ticker import LogLocator, NullLocator
+
     options = plan.options
     with styled():
         figure = new_page(10.4, 4.6)
@@ -119,7 +119,7 @@ def trend_plan_figure(plan: TrendPlan) -> Figure:
                     title=f"A drift of {asked} a year")  # fmt: skip
         for axes in (least, noticed):
             axes.set_xlim(left=0)
-            axes.yaxis.set_major_formatter(FuncFormatter(lambda share, _: f"{100 * share:g} %"))
+            axes.yaxis.set_major_formatter(lambda share, _: f"{100 * share:g} %")
         least.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         least.yaxis.set_minor_locator(NullLocator())
         least.legend(loc="best")

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.ticker import MaxNLocator
 
 from acutance.report.paper import BLUE, FAINT, GREEN, ORANGE, new_page, styled
 
@@ -51,7 +50,7 @@ def plan_figure(result: StudyResult) -> Figure:
         for place, name in zip(axes[-1], varied, strict=True):
             if name == "rows":
                 # Halves of a row are no design.
-                place.xaxis.set_major_locator(MaxNLocator(integer=True, steps=[1, 2, 5, 10]))
+                place.locator_params("x", integer=True, steps=[1, 2, 5, 10])
         axes[0, 0].legend(loc="best")
         name = result.options.sensor_name
         sensor = f" for {name}" if name else ""
