@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+import acutance as ac
 from acutance.errors import RegionError
 from acutance.raster import read_positions
 
@@ -94,3 +95,13 @@ def test_files_that_hold_no_positions(plain, write, text, message):
 def test_no_file(plain):
     with pytest.raises(RegionError, match="there is no such file"):
         read_positions("nowhere.csv", plain)
+
+
+def test_the_truth_of_simulated_points_holds_their_places(write):
+    image = ac.raster.Image.from_array(np.zeros((20, 40)))
+    truth = {"schema": "acutance/truth/1", "kind": "points", "positions": PLACES.tolist()}
+    np.testing.assert_array_equal(read_positions(write(truth, "truth.json"), image), PLACES)
+    for other, words in (({"positions": ["a"]}, "no rows and columns"), ({}, "no positions")):
+        path = write({"schema": "acutance/truth/1", **other}, "other.json")
+        with pytest.raises(RegionError, match=words):
+            read_positions(path, image)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +18,8 @@ from acutance.raster.geolocation import LONLAT_CRS
 from acutance.raster.image import Image, require_image
 
 __all__ = ["read_positions"]
+
+_TRUTH = "acutance/truth/1"
 
 _COLUMNS = {
     PIXELS: (("row", "col"), ("row", "column"), ("y_px", "x_px")),
@@ -39,7 +43,8 @@ def read_positions(path: str, image: Image) -> Floats:
         - a GeoJSON file of Points (or MultiPoints). Its coordinates are in the CRS of its "crs"
           member; "pixel" there means pixels (x the column, y the row). With no such member they
           are longitude and latitude if the image has a CRS, and pixels if not; degrees that lie
-          outside the image and would lie inside as pixels are refused.
+          outside the image and would lie inside as pixels are refused;
+        - the truth that `acutance simulate points` writes beside its image.
     image : Image
 
     Returns
@@ -118,8 +123,20 @@ def _are_numbers(cells: list[str]) -> bool:
         return False
 
 
+def _of_truth(path: str, document: Mapping[str, Any]) -> Floats:
+    """Row and column of every source that was simulated."""
+    try:
+        return np.array(document.get("positions", ()), float).reshape(-1, 2)
+    except (TypeError, ValueError) as error:
+        raise RegionError(
+            f"{path} holds a truth whose positions are no rows and columns: write it again"
+        ) from error
+
+
 def _of_geojson(path: str, image: Image) -> Floats:
     document = load_geojson(path)
+    if document.get("schema") == _TRUTH:
+        return _of_truth(path, document)
     found = points(document, path)
     if found.shape[0] == 0:
         return found

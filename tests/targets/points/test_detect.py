@@ -153,3 +153,16 @@ def test_a_place_too_far_from_the_light_is_told_how_far_that_is(scene):
     assert re.search(r"is 2\.[345] px away, places are needed to 1\.5 px", missing[0].message)
     empty = match_spots(find_spots(scene)[0], np.array([[40.0, 40.0]]))[1]
     assert "no light stands out" in empty[0].message
+
+
+@pytest.mark.parametrize("snr", [None, 60.0])
+def test_a_source_halfway_between_pixels_is_found_once(snr):
+    """Both pixels are as bright as one another, without noise or rounded to few steps."""
+    places = PLACES.copy()
+    places[:3] = [[20.3, 20.5], [20.5, 60.5], [60.5, 20.0]]
+    image, _ = simulate.points(
+        SENSOR, positions=places, shape=(120, 80), snr=snr, rng=np.random.default_rng(4)
+    )
+    for step in (1e-9, 25.0):
+        kept, _ = sorted_by_reason(step * np.rint(image / step))
+        assert len(kept) == len(places)

@@ -18,18 +18,18 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter, map_coordinates, maximum_filter
+from scipy.ndimage import gaussian_filter, maximum_filter
 from scipy.spatial import cKDTree
 
 from acutance.curves.grid import Floats
 from acutance.numerics.clipping import piled_up_share
 from acutance.numerics.noise import robust_scale, rounding_std
 from acutance.targets.points import tuned
+from acutance.targets.points.block_background import block_background
 from acutance.targets.points.moments import (
     BROAD_WINDOW_PX,
     WINDOW_PX,
@@ -44,9 +44,10 @@ __all__ = ["RejectedSpot", "SortedSpots", "Spot", "find_spots", "sort_spots"]
 CLEAR_PX: Final = 3
 """Pixels that have to be there on all sides of a source."""
 _SMOOTHING_PX: Final = 0.7
-_BLOCK_PX: Final = 24
 _MAX_SPOTS: Final = 2000
 _MIN_RING: Final = 16
+_SAME_PX: Final = 0.5
+"""Spots that are nearer to one another are one."""
 
 
 @dataclass(frozen=True)
@@ -135,7 +136,7 @@ def find_spots(image: Floats) -> tuple[tuple[Spot, ...], Floats, float]:
         Standard deviation of the background's noise.
     """
     known = np.isfinite(image)
-    residual = np.where(known, image - _background(image), 0.0)
+    residual = np.where(known, image - block_background(image), 0.0)
     noise = max(
         robust_scale(residual[known]), rounding_std(image[known]),
         1e-9 * float(np.abs(image[known]).max()), 1e-300,
@@ -148,8 +149,22 @@ def find_spots(image: Floats) -> tuple[tuple[Spot, ...], Floats, float]:
     order = np.argsort(-smooth[rows, cols])[:_MAX_SPOTS]
     found = np.stack([rows[order], cols[order]], axis=1)
     found = found[~_lobes(found, smooth[rows[order], cols[order]])]
-    spots = tuple(_spot(residual, (row, col), noise) for row, col in found.tolist())
-    return spots, residual, noise
+    spots = [_spot(residual, (row, col), noise) for row, col in found.tolist()]
+    return _each_once(spots), residual, noise
+
+
+def _each_once(spots: Sequence[Spot]) -> tuple[Spot, ...]:
+    """Spots without those about the middle of one before them.
+
+    A source halfway between two pixels has two tops where rounding or the want of noise makes them
+    equal.
+    """
+    known = [one for one in spots if np.isfinite(one.row + one.col)]
+    if not known:
+        return tuple(spots)
+    pairs = cKDTree([(one.row, one.col) for one in known]).query_pairs(_SAME_PX)
+    again = {id(known[max(pair)]) for pair in pairs}
+    return tuple(one for one in spots if id(one) not in again)
 
 
 def _lobes(tops: NDArray[np.intp], light: Floats) -> NDArray[np.bool_]:
@@ -159,34 +174,6 @@ def _lobes(tops: NDArray[np.intp], light: Floats) -> NDArray[np.bool_]:
     near = cKDTree(tops).query_ball_point(tops, tuned.LOBE_PX)
     brightest = np.array([light[one].max() for one in near])
     return np.asarray(light < tuned.LOBE_SHARE * brightest)
-
-
-def _background(image: Floats) -> Floats:
-    """Medians of blocks, joined by bilinear interpolation."""
-    height, width = image.shape
-    rows = _borders(height)
-    cols = _borders(width)
-    table = np.empty((rows.size - 1, cols.size - 1))
-    whole = float(np.median(image[np.isfinite(image)]))
-    for i, (top, bottom) in enumerate(pairwise(rows)):
-        for j, (left, right) in enumerate(pairwise(cols)):
-            block = image[top:bottom, left:right]
-            usable = block[np.isfinite(block)]
-            table[i, j] = np.median(usable) if usable.size else whole
-    places = np.meshgrid(
-        _in_blocks(height, rows), _in_blocks(width, cols), indexing="ij", sparse=False
-    )
-    return np.asarray(map_coordinates(table, places, order=1, mode="nearest"))
-
-
-def _borders(length: int) -> NDArray[np.intp]:
-    return np.linspace(0, length, max(round(length / _BLOCK_PX), 1) + 1).astype(np.intp)
-
-
-def _in_blocks(length: int, borders: NDArray[np.intp]) -> Floats:
-    """Every pixel's place counted in blocks, from the centre of the first one."""
-    centres = 0.5 * (borders[:-1] + borders[1:] - 1)
-    return np.interp(np.arange(length), centres, np.arange(centres.size))
 
 
 def _spot(residual: Floats, top: tuple[int, int], noise: float) -> Spot:
@@ -389,6 +376,6 @@ def _compared(shape: SpotShape, narrow: float, wide: float) -> tuple[str, str] |
 def _crowded(one: Spot, others: Sequence[Spot], distance_px: float) -> tuple[str, str] | None:
     for other in others:
         away = float(np.hypot(one.row - other.row, one.col - other.col))
-        if 0.5 < away < distance_px and other.peak > tuned.LOBE_SHARE * one.peak:
+        if _SAME_PX < away < distance_px and other.peak > tuned.LOBE_SHARE * one.peak:
             return "blended", f"another source is {away:.1f} px away, {distance_px:g} px are asked"
     return None
