@@ -14,6 +14,7 @@ from acutance.raster import Gsd, Image
 from acutance.simulate import Noise, reference_systems
 from acutance.targets import QUESTIONS
 from acutance.targets.periodic import StarOptions, measure_star
+from acutance.targets.periodic.star_find import find_star
 
 
 def _errors(found, truth):
@@ -211,6 +212,20 @@ def test_cycles_are_counted_or_refused():
         measure_star(image, cycles=30)
     with pytest.raises(OptionError, match="3 cycles"):
         measure_star(image, cycles=3)
+
+
+@pytest.mark.parametrize("wave", ["sine", "square"])
+@pytest.mark.parametrize("cycles", [4, 5, 7, 9])
+def test_few_cycles_are_found_and_counted(wave, cycles):
+    """A tenth of a turn holds less than a cycle, and another number moves the centre off."""
+    image, truth = ac.simulate.star(
+        reference_systems()["gaussian"], cycles=cycles, shape=(112, 112), wave=wave, snr=100,
+        rng=np.random.default_rng(cycles),
+    )  # fmt: skip
+    for stated in (cycles, None):
+        found = find_star(image, stated)
+        assert found.cycles == cycles
+        assert math.hypot(found.row - truth.star.row, found.col - truth.star.col) < 2.5
 
 
 def test_a_star_seen_aslant_is_refused_with_a_word_for_it():

@@ -73,22 +73,51 @@ def find_star(
             "holds the star, with some pixels around it"
         )
     farthest = _farthest(lively, row, col)
-    local = _strengths(smooth, lively, (row, col), farthest, cycles, turns=1 / _SECTORS)
+    local = _strengths(smooth, lively, (row, col), farthest, cycles, sectors=_SECTORS)
     _require_spokes(local, cycles, row, col, farthest)
     first = max(local, key=lambda n: local[n]) if cycles is None else cycles
-    found = _settled(smooth, lively, SiemensStar(row, col, first, 0.0, farthest))
-    whole = _strengths(
-        smooth, lively, (found.row, found.col), farthest, first if cycles is None else cycles
-    )
+    start = SiemensStar(row, col, first, 0.0, farthest)
+    found = _settled(smooth, lively, start)
+    whole = _strengths(smooth, lively, (found.row, found.col), farthest, first)
+    likely = sorted(local, key=lambda n: -local[n])[:_LIKELY_COUNTS]
+    others = {*likely, *(first + k for k in _NEXT_COUNTS)} & local.keys()
     if cycles is not None:
-        likely = sorted(local, key=lambda n: -local[n])[:_LIKELY_COUNTS]
-        others = {*likely, *(cycles + k for k in _NEXT_COUNTS)} & local.keys()
-        start = replace(found, row=row, col=col)
         _require_count(smooth, lively, start, whole.get(cycles, 0.0), others)
-    best = max(whole, key=lambda n: whole[n]) if cycles is None else cycles
-    if best != first:
-        found = _settled(smooth, lively, replace(found, cycles=best))
+    else:
+        found = _counted(smooth, lively, start, found, whole, others)
     return extent_of(smooth, usable, found, found.radius_at(_COARSE_CPP))
+
+
+def _counted(
+    smooth: Floats,
+    lively: Flags,
+    start: SiemensStar,
+    found: SiemensStar,
+    whole: dict[int, float],
+    others: Iterable[int],
+) -> SiemensStar:
+    """The star whose cycles explain the rings best.
+
+    `whole` has the share that each number explains about the centre of `found`. Unless one of
+    them is sure, others are counted about the centres that they lead to themselves.
+    """
+    best = max(whole, key=lambda n: whole[n])
+    if whole[best] < _SURE_STRENGTH:
+        about = {n: _about_own(smooth, lively, replace(start, cycles=n)) for n in others}
+        own = max(about, key=lambda n: about[n][1], default=best)
+        if own in about and about[own][1] > whole[best]:
+            return about[own][0]
+    return found if best == found.cycles else _settled(smooth, lively, replace(found, cycles=best))
+
+
+def _about_own(smooth: Floats, lively: Flags, start: SiemensStar) -> tuple[SiemensStar, float]:
+    """A star about the centre that its cycles lead to, and the share of the rings they explain."""
+    try:
+        star = _settled(smooth, lively, start)
+    except NoStarError:
+        return start, 0.0
+    about = PixelsAbout.of(smooth, lively, star.row, star.col)
+    return star, about.strength(star.cycles, star.radius_at(_COARSE_CPP), star.rim_px, 1)
 
 
 def _settled(smooth: Floats, lively: Flags, star: SiemensStar) -> SiemensStar:
@@ -149,15 +178,18 @@ def _strengths(
     centre: tuple[float, float],
     farthest: float,
     cycles: int | None,
-    turns: float = 1.0,
+    sectors: int = 1,
 ) -> dict[int, float]:
-    """How much of the rings each number of cycles explains, in parts of so many turns."""
+    """How much of the rings each number of cycles explains, in so many parts of them.
+
+    A part holds a cycle or more: within less of one, a wave hardly changes.
+    """
     counts = set(range(4, 201)) if cycles is None else {cycles, *range(4, 201)}
     pixels, found = PixelsAbout.of(smooth, usable, *centre), {}
     for n in sorted(counts):
         first = n / (2 * math.pi * _COARSE_CPP)
         if first < 0.85 * farthest:
-            found[n] = pixels.strength(n, first, farthest, turns)
+            found[n] = pixels.strength(n, first, farthest, min(sectors, n))
     return found
 
 
@@ -191,9 +223,7 @@ def _require_count(
         return
     best, strength = start, own
     for n in sorted(others):
-        star = _settled(smooth, lively, replace(start, cycles=n))
-        about = PixelsAbout.of(smooth, lively, star.row, star.col)
-        found = about.strength(n, star.radius_at(_COARSE_CPP), start.rim_px, 1.0)
+        star, found = _about_own(smooth, lively, replace(start, cycles=n))
         if found > strength:
             best, strength = star, found
     is_alike = strength < 1.5 * own and 1 - strength > 0.5 * (1 - own)

@@ -44,7 +44,7 @@ class PixelsAbout:
         angle = np.arctan2(rows - row, cols - col)
         return cls(radius[order], angle[order], image[usable][order])
 
-    def strength(self, cycles: int, first: float, last: float, turns: float) -> float:
+    def strength(self, cycles: int, first: float, last: float, parts: int) -> float:
         """Share of the rings' variance that some cycles explain, by least squares.
 
         Parameters
@@ -53,8 +53,8 @@ class PixelsAbout:
             In a full turn.
         first, last : float
             Radii of the innermost and the outermost ring, px.
-        turns : float
-            A ring is fitted in parts of so many turns.
+        parts : int
+            A ring is fitted in so many parts, each by itself.
         """
         ends = np.searchsorted(
             np.floor((self.radius - first) / RING_STEP_PX),
@@ -71,7 +71,6 @@ class PixelsAbout:
         angle, value = self.angle[kept], self.value[kept]
         value = value - (np.bincount(ring, value) / sizes)[ring]
         power = float(np.sum(np.bincount(ring, value**2) / sizes))
-        parts = round(1 / turns)
         part = ring * parts + ((angle + math.pi) / (2 * math.pi) * parts).astype(np.intp) % parts
         explained = _explained(part, cycles * angle, value, rings.size * parts)
         return min(float(np.sum(explained / np.repeat(sizes, parts))) / max(power, 1e-300), 1.0)
