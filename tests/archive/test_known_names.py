@@ -10,6 +10,7 @@ import pytest
 from acutance.archive import Archive, Entry, ImageEntry
 from acutance.archive.specification import Specification
 from acutance.errors import NothingSelectedError, OptionError
+from acutance.report.archive.sensor_page import sensor_page
 from acutance.targets.record import Record
 
 
@@ -38,6 +39,18 @@ def test_an_empty_selection_names_what_there_is(archive: Archive, entry_of: Any)
     # What occurs, but not together, is no misspelling.
     with pytest.raises(NothingSelectedError, match="holds nothing that is selected"):
         archive.table(sensor="K3", since="2030-01-01")
+
+
+@pytest.mark.parametrize("ask", ["trend", "mean", "compare", "table", "page"])
+def test_an_empty_archive_is_called_empty(archive: Archive, ask: str) -> None:
+    """No filter is too narrow there, and no sensor misspelt."""
+    asked: dict[str, Any] = {
+        "trend": lambda: archive.trend("rer"), "mean": lambda: archive.mean("rer"),
+        "compare": archive.compare, "table": lambda: archive.table(sensor="QB02"),
+        "page": lambda: sensor_page(archive, "QB02"),
+    }  # fmt: skip
+    with pytest.raises(NothingSelectedError, match=r"is empty: add measurements to it"):
+        asked[ask]()
 
 
 def test_kinds_are_those_that_there_are(archive: Archive) -> None:

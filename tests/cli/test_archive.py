@@ -224,6 +224,28 @@ def test_an_import_of_nothing_makes_no_archive(acutance, tmp_path):
     assert not place.exists()
 
 
+def test_what_is_no_json_at_all_was_not_cut(acutance, tmp_path):
+    image, cut = tmp_path / "image.tif", tmp_path / "cut.json"
+    image.write_bytes(b"II*\x00\xff\xfe")
+    cut.write_text('{"schema": "acutance/meas')
+    done = acutance("archive", "import", tmp_path / "new.db", image, cut, tmp_path / "no.parquet")
+    assert "image.tif: it is no JSON: give what a measuring command printed" in done.stderr
+    assert "cut.json: it is no JSON (" in done.stderr
+    assert "was it cut?" in done.stderr
+    assert "no.parquet: No such file or directory" in done.stderr
+    assert "is no Parquet" not in done.stderr
+
+
+@pytest.mark.parametrize("words", [("list",), ("trend",), ("export", "out.csv")])
+def test_an_empty_archive_is_called_empty(acutance, tmp_path, words):
+    place = tmp_path / "empty.db"
+    with Archive(place):
+        pass
+    done = acutance("archive", words[0], place, *words[1:])
+    assert done.exit_code == 4
+    assert "is empty: add measurements to it (acutance archive import" in done.stderr
+
+
 def test_an_empty_file_is_no_archive(acutance, tmp_path):
     place = tmp_path / "image.tif"
     place.touch()

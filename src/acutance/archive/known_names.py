@@ -6,6 +6,7 @@ from sqlalchemy import Connection, select
 
 from acutance.archive.connection import Database
 from acutance.archive.selection import Selection, names_of
+from acutance.archive.tables import measurements
 from acutance.errors import NothingSelectedError
 
 __all__ = ["require_known_names", "unknown_names"]
@@ -14,7 +15,7 @@ _MANY = 20
 
 
 def require_known_names(database: Database, selection: Selection) -> None:
-    """Refuse names that occur nowhere in the archive, all of them at once.
+    """Refuse names that occur nowhere in the archive, all of them at once, and an empty archive.
 
     Parameters
     ----------
@@ -24,8 +25,13 @@ def require_known_names(database: Database, selection: Selection) -> None:
     Raises
     ------
     NothingSelectedError
-        Tells the names that occur.
+        Tells the names that occur, or that there is nothing at all.
     """
+    if database.read(_is_empty):
+        raise NothingSelectedError(
+            f"archive {database.place} is empty: add measurements to it (acutance archive import, "
+            "acutance batch, Archive.add)"
+        )
     found = unknown_names(database, selection)
     if found:
         raise NothingSelectedError(f"archive {database.place}: {found}")
@@ -40,6 +46,10 @@ def unknown_names(database: Database, selection: Selection) -> str:
     selection : Selection
     """
     return "; ".join(database.read(lambda connection: _unknown(connection, selection)))
+
+
+def _is_empty(connection: Connection) -> bool:
+    return connection.execute(select(measurements.c.id).limit(1)).first() is None
 
 
 def _unknown(connection: Connection, selection: Selection) -> list[str]:

@@ -39,7 +39,7 @@ class Questions(ABC):
         """Measurements as columns."""
 
     def require_known_names(self, selection: SelectionWords) -> None:
-        """Refuse filters by names that occur nowhere, all of them at once.
+        """Refuse filters by names that occur nowhere, all of them at once, and an empty archive.
 
         Parameters
         ----------
@@ -49,7 +49,7 @@ class Questions(ABC):
         Raises
         ------
         NothingSelectedError
-            Tells the names that occur.
+            Tells the names that occur, or that there is nothing at all.
         """
         from acutance.archive.known_names import require_known_names
 

@@ -149,8 +149,18 @@ def _entries(place: str, text: bytes | str, stated: Stated, refused: dict[str, s
     except OptionError as error:
         refused[place] = str(error)
     except ValueError as error:
-        refused[place] = f"it is no JSON ({error}): was it cut?"
+        refused[place] = _no_json(text, error)
     return []
+
+
+def _no_json(text: bytes | str, error: ValueError) -> str:
+    begin = text.lstrip()[:1]
+    if begin in (b"{", "{", b"[", "["):
+        return f"it is no JSON ({error}): was it cut?"
+    return (
+        "it is no JSON: give what a measuring command printed with --json, or what acutance "
+        "archive export wrote"
+    )
 
 
 def _files(path: Path) -> list[Path]:

@@ -61,15 +61,17 @@ def read_parquet(place: Path) -> Iterator[tuple[str, str]]:
     ------
     OptionError
         If pyarrow is not installed, or the file is not what `write_parquet` wrote.
+    OSError
+        If the file cannot be opened.
     """
     require_library("pyarrow", "parquet")
     from pyarrow import ArrowException, parquet
 
-    try:
-        file = parquet.ParquetFile(place)
-    except (ArrowException, OSError) as error:
-        raise OptionError(f"{place} is no Parquet file ({error})") from error
-    with file:
+    with place.open("rb") as stream:
+        try:
+            file = parquet.ParquetFile(stream)
+        except ArrowException as error:
+            raise OptionError(f"{place} is no Parquet file ({error})") from error
         if "document" not in file.schema_arrow.names:
             raise OptionError(
                 f"{place} has no column of documents: give a Parquet file that acutance archive "

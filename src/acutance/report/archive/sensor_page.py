@@ -105,6 +105,7 @@ def sensor_page_and_states(
     every, rejected = archive.measurements(sensor=sensor), archive.rejected(sensor=sensor)
     rows = archive.measurements(sensor=sensor, verdict=verdict)
     if not len(rows):
+        archive.require_known_names({})
         sensors = archive.overview().sensors
         known = [one.sensor or "'' (not named)" for one in sensors if one.measured]
         raise NothingSelectedError(
