@@ -84,3 +84,14 @@ def test_a_named_sensor_may_have_another_gsd(acutance, tmp_path):
         result = acutance("simulate", "edge", *words)
         assert result.exit_code == 0, result.stderr
         assert open_image(str(tmp_path / "a.tif")).gsd().row_m == pytest.approx(gsd)
+
+
+@pytest.mark.parametrize("words", [("edge",), ("pair", "--high", "high.tif")])
+def test_levels_that_single_precision_does_not_hold_are_refused(acutance, tmp_path, words):
+    """They would be infinite in the file."""
+    words = [str(tmp_path / one) if one.endswith(".tif") else one for one in words]
+    out = tmp_path / "huge.tif"
+    done = acutance("simulate", *words, "--bright", "1e300", "--out", out)
+    assert done.exit_code == 2
+    assert "do not fit float32, which holds -3.40282e+38 to 3.40282e+38" in done.stderr
+    assert not out.exists()

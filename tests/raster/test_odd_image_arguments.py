@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from acutance.errors import AcutanceError, OptionError, RegionError
+from acutance.errors import AcutanceError, ImageError, OptionError, RegionError
 from acutance.raster import (
     Box,
     Geolocation,
@@ -131,11 +131,19 @@ def test_fields_of_a_statement_have_names(path):
     assert stated.band_name(np.int64(9)) is None
 
 
+def write_tile(values, dtype):
+    pixels = np.array(values)
+    write_geotiff_tiles("n.tif", pixels.shape, [(Box.whole(pixels.shape), pixels)], dtype=dtype)
+
+
 @pytest.mark.parametrize(
     ("call", "error", "message"),
     [
         (lambda: write_geotiff_tiles("n.tif", (4, 4), [], dtype="x"), OptionError, "dtype is 'x'"),
         (lambda: write_geotiff_tiles("n.tif", (4, 4), 3), OptionError, "tiles are 3: give pairs"),
+        (lambda: write_tile([[255.0, 256.0]], "uint8"), ImageError, "255 to 256 do not fit uint8"),
+        (lambda: write_tile([[1.0, np.nan]], "int16"), ImageError, "1 to 1 and NaN do not fit int"),
+        (lambda: write_tile([[np.nan, 1e39]], "float32"), ImageError, "1e.39 do not fit float32"),
         (lambda: TableCurve("a", [1.0], [1.0, 2.0]), OptionError, "give two columns of one length"),
         (lambda: SrgbCurve(0), OptionError, "full_scale is 0: give the value of white, above 0"),
         (lambda: find_fill(IMAGE, BOX, PIXELS), OptionError, r"have the shape \(20, 20\): give"),

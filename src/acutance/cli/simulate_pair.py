@@ -67,7 +67,7 @@ def pair(
     import numpy as np
 
     from acutance import simulate
-    from acutance.raster import write_geotiff
+    from acutance.raster import Box, write_geotiff_tiles
     from acutance.report import json_text, sensor_document
 
     coarse, detailed, truth = simulate.pair(
@@ -85,7 +85,10 @@ def pair(
     )
     for file, image, gsd_m in ((files.image, coarse, gsd), (fine, detailed, gsd / ratio)):
         transform = (gsd_m, 0.0, _ORIGIN_M[0], 0.0, -gsd_m, _ORIGIN_M[1])
-        write_geotiff(file.place, image.astype(np.float32), transform=transform, crs=_CRS)
+        whole = Box.whole((image.shape[0], image.shape[1]))
+        write_geotiff_tiles(
+            file.place, whole.shape, [(whole, image)], transform=transform, crs=_CRS
+        )
         say(f"wrote {file.path}")
     document = {
         "schema": "acutance/truth/1",

@@ -108,7 +108,8 @@ def write_geotiff_tiles(
     Raises
     ------
     ImageError
-        If the parts do not make the image, or the file cannot be written.
+        If the parts do not make the image, hold values that the type does not, or the file cannot
+        be written.
     OptionError
         If the GSD is not a positive number, or an argument of the wrong kind.
     """
@@ -120,7 +121,7 @@ def write_geotiff_tiles(
         stored = np.dtype(dtype)
     except TypeError:
         raise OptionError(f"dtype is {dtype!r:.80}: give a type of numpy, numpy.float32") from None
-    bands = ((box, _tile(box, pixels, shape)) for box, pixels in tiles)
+    bands = ((box, _tile(box, pixels, shape, stored)) for box, pixels in tiles)
     place = (transform, crs, nodata, _gsd_tags(Gsd.given(gsd_m)))
     _write(Path(path), 1, shape, stored, bands, *place)
 
@@ -224,7 +225,9 @@ def written_in_our_words(target: Path, advice: str) -> Iterator[None]:
         ) from error
 
 
-def _tile(box: Box, pixels: NDArray[Any], shape: tuple[int, int]) -> NDArray[Any]:
+def _tile(
+    box: Box, pixels: NDArray[Any], shape: tuple[int, int], stored: np.dtype[Any]
+) -> NDArray[Any]:
     """A part with its band first, if it fits."""
     box.require_inside(shape)
     if pixels.shape != box.shape:
@@ -232,7 +235,24 @@ def _tile(box: Box, pixels: NDArray[Any], shape: tuple[int, int]) -> NDArray[Any
             f"a part of shape {pixels.shape} was given for a box of {box.height} by {box.width} "
             "pixels: give (rows, columns) of that size"
         )
+    _require_values(pixels, stored)
     return pixels[np.newaxis]
+
+
+def _require_values(pixels: NDArray[Any], stored: np.dtype[Any]) -> None:
+    """Refuse values that would become infinite, or others, in the type that is written."""
+    if np.can_cast(pixels.dtype, stored) or {pixels.dtype.kind, stored.kind} - set("iuf"):
+        return
+    known = pixels[np.isfinite(pixels)]
+    low, high = (known.min(), known.max()) if known.size else (0.0, 0.0)
+    limits = np.finfo(stored) if stored.kind == "f" else np.iinfo(stored)
+    missing = stored.kind != "f" and known.size < pixels.size
+    if missing or low < limits.min or high > limits.max:
+        raise ImageError(
+            f"values from {low:g} to {high:g}{' and NaN' if missing else ''} do not fit "
+            f"{stored.name}, which holds {float(limits.min):g} to {float(limits.max):g}: "
+            "scale them, or give another type (dtype)"
+        )
 
 
 def _as_bands(array: NDArray[Any]) -> NDArray[Any]:
