@@ -180,3 +180,17 @@ def test_longer_edge_gives_a_quartic_its_phases_again():
     trimmed = EdgePixels(image, truth.line, truth.dark, truth.bright, 0.5, 0.0)
     fit = sdsu_2005(trimmed, SdsuOptions(distance="normal", order=4, replicates=0))
     assert fit.response.mtf(0.25).value == pytest.approx(truth.mtf(0.25).value, abs=2e-3)
+
+
+@pytest.mark.parametrize("offset_px", [0.0, 0.03, 0.4])
+@pytest.mark.parametrize("phases", [7, 10, 11, 13])
+def test_phases_next_to_a_tenth_of_a_pixel_apart_are_enough_for_a_quartic(phases, offset_px):
+    sensor = simulate.reference_systems()["sharpened"]
+    angle_deg = math.degrees(math.atan(1 / phases))
+    image, truth = simulate.edge(
+        sensor, angle_deg=angle_deg, shape=(60, 50), offset_px=offset_px, snr=200,
+        rng=np.random.default_rng(phases),
+    )  # fmt: skip
+    trimmed = EdgePixels(image, truth.line, truth.dark, truth.bright, 0.005 * 1000, 0.0)
+    fit = sdsu_2005(trimmed, SdsuOptions(distance="normal", order=4, replicates=0))
+    assert fit.response.mtf(0.25).value == pytest.approx(truth.mtf(0.25).value, abs=0.02)

@@ -63,6 +63,7 @@ def test_the_smaller_rer_counts_twice_in_version_5():
         ({"rer": 0.9, "snr": 50, "version": 4}, "jump at RER 0.9"),
         ({"rer": ac.Estimate(0.86, 0.03), "snr": 50, "version": 4}, "jump at RER 0.9"),
         ({"rer": 0.6, "snr": 50, "noise_gain": 2.0}, "sharpened image"),
+        ({"rer": 0.6, "snr": 50, "giqe_h": 1.2}, "overshoot H"),
         ({"rer": 0.5, "snr": 50, "gsd_m": 70}, "GSD out of range"),
         ({"rer": 0.5, "snr": 50, "gsd_m": 70}, "off the scale"),
         ({"rer": 0.5, "snr": 50, "elevation_deg": 12}, "low elevation"),

@@ -20,7 +20,13 @@ from acutance.restoration.named_records import (
     named_records,
     warnings_of,
 )
-from acutance.restoration.niirs_notes import ONE_DIRECTION, GiqeVersion, Note, equation_notes
+from acutance.restoration.niirs_notes import (
+    NO_OVERSHOOT,
+    ONE_DIRECTION,
+    GiqeVersion,
+    Note,
+    equation_notes,
+)
 from acutance.targets import Record
 from acutance.targets.check import VerdictWord
 from acutance.targets.combine import combine
@@ -164,6 +170,7 @@ def niirs(
             *source.warnings,
             *equation_notes(inputs, value, version, float(known["rer_std"])),
             *((ONE_DIRECTION,) if known.get("one_direction") else ()),
+            *((NO_OVERSHOOT,) if version == 5 and giqe_h is not None else ()),
         ),
         verdict=source.verdict,
         measured_gsd_m=_other_gsd(source.numbers.get("gsd_m"), inputs.gsd_m),

@@ -8,7 +8,7 @@ from typing import Literal
 
 from acutance.restoration.giqe import JUMP_RER, GiqeInputs, giqe4_jump
 
-__all__ = ["ONE_DIRECTION", "GiqeVersion", "Note", "equation_notes"]
+__all__ = ["NO_OVERSHOOT", "ONE_DIRECTION", "GiqeVersion", "Note", "equation_notes"]
 
 GiqeVersion = Literal[3, 4, 5]
 
@@ -46,6 +46,13 @@ ONE_DIRECTION = Note(
     "one direction",
     "the measurement shows one direction, whose RER stands for both: state the other (rer, --rer), "
     "or give a measurement of another direction besides (across.json along.json)",
+)
+
+
+NO_OVERSHOOT = Note(
+    "overshoot H",
+    "version 5 has no term for overshoot, so the stated H changes nothing: use version 3 or 4 "
+    "(version, --version)",
 )
 
 

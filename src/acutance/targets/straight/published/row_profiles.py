@@ -36,8 +36,11 @@ MIN_ROWS = 10
 MAX_PHASE_GAP_PX = 0.3
 """Widest gap between neighbouring sample phases along a row: four phases and a little room."""
 
-_DISTINCT_PX = 0.1
-"""Phases nearer to each other than this are one: the line's own error may part them."""
+_DISTINCT_PX = 0.08
+"""Phases nearer to each other than this are one: the line's own error may part them.
+
+Of evenly spaced ones that are a little nearer every second counts: 6, as many as a quartic needs.
+"""
 
 _REACH_PX = 3
 """Pixels on each side of the edge that must be usable for a row to locate it (seven in all)."""
