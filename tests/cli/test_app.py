@@ -161,3 +161,14 @@ def test_ctrl_c_is_one_line_and_exit_130(acutance, monkeypatch, words):
     result = acutance("sites")
     assert (result.exit_code, result.stdout) == (130, "")
     assert result.stderr == f"acutance: {words or 'interrupted'}\n"
+
+
+def test_ctrl_c_before_a_command_runs_is_one_line_too(monkeypatch, capsys):
+    def broken(**_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(app_module, "app", broken)
+    with pytest.raises(SystemExit) as ended:
+        app_module.run()
+    assert ended.value.code == 130
+    assert capsys.readouterr().err == "acutance: interrupted\n"

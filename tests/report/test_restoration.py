@@ -41,6 +41,13 @@ def test_the_text_has_both_sides_of_the_bargain(sharpening):
         assert words in text
 
 
+def test_a_change_without_a_deviation_has_the_sign_of_other_numbers(sharpening):
+    """Of a described sensor: version 5 loses by the noise."""
+    (line,) = re.findall(r"Change of NIIRS, GIQE 5.*", restoration_text(sharpening))
+    assert sharpening.niirs_change[5].value < 0
+    assert re.search(r" −0\.\d+$", line)
+
+
 @pytest.mark.parametrize(
     ("sources", "notes", "shown"),
     [

@@ -39,6 +39,7 @@ from acutance.cli.output import outputs_of_a_run
 from acutance.cli.terminal import (
     BAD_USAGE,
     EXIT_CODES,
+    INTERRUPTED,
     NOTHING_MEASURED,
     fail,
     log_said,
@@ -238,4 +239,8 @@ def run() -> None:
     replace_what_streams_lack()
     # A third of a second, for memory that the system takes back anyway.
     atexit.register(gc.freeze)
-    app(prog_name="acutance")
+    try:
+        app(prog_name="acutance")
+    except KeyboardInterrupt:  # While the commands are built.
+        say("acutance: interrupted")
+        sys.exit(INTERRUPTED)

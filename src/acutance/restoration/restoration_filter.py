@@ -126,7 +126,9 @@ class RestorationFilter(ShortRepr):
                 f"{_WRITERS} wrote"
             ) from error
         except ValueError as error:
-            raise OptionError(f"{path} holds no JSON ({error}): it was cut or changed") from error
+            raise OptionError(
+                f"{path} holds no JSON ({error}): it is no file that {_WRITERS} wrote, or was cut"
+            ) from error
         try:
             return cls.from_dict(document)
         except OptionError as error:

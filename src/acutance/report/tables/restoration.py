@@ -109,7 +109,9 @@ def _products(filter: RestorationFilter, direction: str) -> tuple[str, str]:
 
 def _in_words(number: Estimate) -> str:
     """A number with its deviation; without one three digits have to do."""
-    return word_estimate(number).value_and_std if number.std > 0 else format_number(number.value, 3)
+    if number.std > 0:
+        return word_estimate(number).value_and_std
+    return format_number(number.value, 3).replace("-", "−")
 
 
 def _trade(filter: RestorationFilter) -> Table:

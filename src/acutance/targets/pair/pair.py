@@ -96,6 +96,8 @@ def measure_biresolution(
         If the images do not overlap, or too few low pixels have the high image around them.
     TargetError
         If the images hold no structure, or nothing in common.
+    NoDataError
+        If one of them holds next to no data.
     """
     require_known_method("bi-resolution", method, BIRESOLUTION_METHODS)
     chosen = chosen_options(options, BiresolutionOptions)

@@ -14,7 +14,7 @@ from scipy import fft
 from scipy.ndimage import uniform_filter
 
 from acutance.curves.grid import Floats
-from acutance.errors import TargetError
+from acutance.errors import NoDataError, TargetError
 from acutance.numerics.noise import robust_scale
 from acutance.raster import Image, Region
 from acutance.targets.pair import tuned
@@ -104,6 +104,8 @@ def registered_tiles(
     ------
     TargetError
         If the images have nothing in common, or match best at the end of what was looked at.
+    NoDataError
+        If one of them holds next to no data.
     RegionError
         If too few low pixels have the high image around them.
     """
@@ -112,6 +114,7 @@ def registered_tiles(
     )
     found = _best_match(first, options.max_shift_px)
     if found.correlation <= 0:
+        _require_data(first)
         raise TargetError(
             "the two images have no structure in common within "
             f"{options.max_shift_px} low pixels: one is uniform, or they show different ground; "
@@ -158,6 +161,19 @@ def _best_match(tiles: PairTiles, max_shift_px: int) -> Registration:
     away = [axis.offset_px + (first_of_cell(axis) + 0.5 * (axis.per_px - 1)) / axis.per_px
             for axis in (tiles.taps.down, tiles.taps.across)]  # fmt: skip
     return replace(best, shift_px=(best.shift_px[0] - away[0], best.shift_px[1] - away[1]))
+
+
+def _require_data(tiles: PairTiles) -> None:
+    """Refuse images that have nothing in common because one of them holds no data."""
+    for name, is_empty, option in zip(
+        ("low", "high"), tiles.are_empty(), ("--nodata", "--high-nodata"), strict=True
+    ):
+        if is_empty:
+            raise NoDataError(
+                f"the {name} image holds no data where the two overlap: choose another region, or "
+                f"correct its nodata value if pixels that have it are data (nodata, {option}; nan: "
+                "every value is data)"
+            )
 
 
 def _detail(image: Floats) -> Floats:

@@ -209,6 +209,18 @@ class PairTiles:
             fills += [read_data(self.low, box)[1], read_data(self.high, self._high_box(box))[1]]
         return fills
 
+    def are_empty(self) -> tuple[bool, bool]:
+        """Whether the low image holds no data at all in the tiles, and the high one next to them.
+
+        Nothing is read once a pixel with data is found.
+        """
+        places = [(self.low, self.boxes), (self.high, map(self._high_box, self.boxes))]
+        low, high = (
+            not any(np.isfinite(read_data(image, box)[0]).any() for box in boxes)
+            for image, boxes in places
+        )
+        return low, high
+
     def _high_box(self, box: Box) -> Box:
         rows = _window(self.grid.down.taps(self.reach_px), box.row, box.height, far=False)
         cols = _window(self.grid.across.taps(self.reach_px), box.col, box.width, far=False)
