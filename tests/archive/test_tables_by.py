@@ -53,3 +53,18 @@ def test_a_column_of_one_kind_has_no_marks(filled: Archive) -> None:
     means = filled.table(("sensor",), ("mtf_nyquist",), target="tarp 0", orientation="across")
     assert len(means.notes) == 1
     assert not any("*" in cell for text in means.texts() for cell in text)
+
+
+def test_means_of_several_methods_are_told_to_be_that(
+    filled: Archive, edge_record: ac.Record, entry_of: Any
+) -> None:
+    """Methods differ by what they are, which stands in the mean of both and in its scatter."""
+    other = ac.Record({**edge_record.document, "method": "sdsu-2005"})
+    filled.add_entries([entry_of(12, record=other)])
+    mixed = filled.table()
+    (note,) = (one for one in mixed.notes if "methods" in one)
+    assert "by 2 methods stand in these means together (edge sdsu-2005, edge spline)" in note
+    assert "--by site,date,method" in note
+    assert note in mixed.to_dict()["notes"]
+    for parted in (filled.table(("target", "method")), filled.table(method="spline")):
+        assert not any("methods" in one for one in parted.notes)

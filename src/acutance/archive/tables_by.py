@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from acutance.archive.columns import Columns, csv_text
 from acutance.archive.mean_of_images import mean_of_images
 from acutance.archive.measurements import Measurements
+from acutance.archive.mixed_methods import mixed_methods_notes
 from acutance.archive.natural_order import natural_key
 from acutance.archive.restored_images import restored_notes
 from acutance.archive.trends.measured_series import random_and_systematic, target_codes
@@ -225,7 +226,7 @@ def table_by(
                                 and len(set(words[one])) > 1), default=0))  # fmt: skip
     return MeasurementTable(
         names, tuple(metrics), tuple(_with_averages(numbers, found, keys, fixed, metrics)),
-        tuple(restored_notes(rows)),
+        (*mixed_methods_notes(words, by), *restored_notes(rows)),
     )  # fmt: skip
 
 

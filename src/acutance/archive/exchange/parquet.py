@@ -61,8 +61,6 @@ def read_parquet(place: Path) -> Iterator[tuple[str, str]]:
     ------
     OptionError
         If pyarrow is not installed, or the file is not what `write_parquet` wrote.
-    OSError
-        If the file cannot be opened.
     """
     require_library("pyarrow", "parquet")
     from pyarrow import ArrowException, parquet
