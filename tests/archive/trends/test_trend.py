@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import pickle
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -119,3 +120,17 @@ def test_scatter_has_the_tails_of_student() -> None:
     found = with_scatter(sharp, np.ones(1), np.array([3.0]))
     assert found.quantile(0.975) == pytest.approx(3.18, rel=0.05)
     assert found.quantile(0.75) == pytest.approx(0.765, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("lacks", "advice"),
+    [("value", "has a value: choose another metric; numbers on the ground need the GSD"),
+     ("when", "has a date and a value: state when the images were acquired")],
+)  # fmt: skip
+def test_what_measurements_lack_is_what_is_asked_for(
+    series_of: Make, lacks: str, advice: str
+) -> None:
+    whole = series_of(images=5)
+    without = replace(whole, **{lacks: np.full(5, np.nan)})
+    with pytest.raises(ac.OptionError, match=f"none of 5 measurements {advice}$"):
+        fit_trend(without)

@@ -447,7 +447,7 @@ def test_targets_that_an_image_does_not_show_are_named_and_not_called_rejected(
 def test_a_sensor_that_is_not_there_is_named(archive):
     with pytest.raises(OptionError, match=r"0 measurements of 'QB03'.* sensors are QB02:"):
         sensor_page(archive, "QB03")
-    with pytest.raises(OptionError, match="no metric 'mtf'"):
+    with pytest.raises(OptionError, match="no metric 'mtf', only mtf_nyquist"):
         sensor_page(archive, "QB02", metric="mtf")
 
 

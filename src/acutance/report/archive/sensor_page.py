@@ -14,7 +14,7 @@ from acutance.archive.elsewhere import elsewhere
 from acutance.archive.requirement_selection import asked_of, asks_nothing
 from acutance.archive.specification import read_specification
 from acutance.archive.trends.measured_series import NO_SENSOR
-from acutance.curves import MAIN_NUMBERS
+from acutance.curves import MAIN_NUMBERS, METRICS
 from acutance.curves.metric_words import METRIC_WORDS
 from acutance.errors import NothingSelectedError, OptionError
 from acutance.report.archive.gsd_bands import with_gsd_bands
@@ -100,8 +100,8 @@ def sensor_page_and_states(
     command: str | None = None,
 ) -> tuple[str, list[SeriesState]]:
     """The page, and the states it has, whose trends take most of its time."""
-    if metric not in METRIC_WORDS:
-        raise OptionError(f"there is no metric {metric!r}, only {', '.join(METRIC_WORDS)}")
+    if metric not in METRICS:
+        raise OptionError(f"there is no metric {metric!r}, only {', '.join(METRICS)}")
     every, rejected = archive.measurements(sensor=sensor), archive.rejected(sensor=sensor)
     rows = archive.measurements(sensor=sensor, verdict=verdict)
     if not len(rows):
