@@ -16,6 +16,7 @@ from acutance.targets.periodic.pattern_checks import (
     level,
     nonlinearity,
     outliers,
+    quantisation,
     saturation,
     stated_levels,
 )
@@ -26,8 +27,8 @@ __all__ = ["BARS_CHECKS", "bars_checks"]
 
 BARS_CHECKS = (
     "contrast_snr", "level", "stated_levels", "bars", "bar_directions", "coarsest_cpp",
-    "finest_cpp", "misfit", "saturation", "undeclared_fill", "stated_gsd", *PROCESSING_CHECKS,
-    "nonlinearity", "contrast_uniformity", "correlated_noise", "outliers",
+    "finest_cpp", "misfit", "saturation", "undeclared_fill", "quantisation", "stated_gsd",
+    *PROCESSING_CHECKS, "nonlinearity", "contrast_uniformity", "correlated_noise", "outliers",
 )  # fmt: skip
 """The names of the checks of bars."""
 
@@ -61,6 +62,7 @@ def bars_checks(
         _misfit(solved, limits),
         saturation(pixels, region.saturation_level, solved.snr, "the pixels", limits),
         undeclared_fill([region.fill], limits),
+        quantisation(pixels, solved.noise, solved.correlation, limits),
         stated_gsd(region.info, limits),
         *processing_checks(region, limits),
         nonlinearity(region, _curvature(solved), "bars", limits),

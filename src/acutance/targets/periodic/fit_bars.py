@@ -25,7 +25,7 @@ from acutance.errors import NoBarsError
 from acutance.geometry.bar_group import Bars
 from acutance.numerics.combined_prior import CombinedPrior
 from acutance.numerics.marginal_likelihood import Posterior
-from acutance.numerics.noise import Correlation, correlation
+from acutance.numerics.noise import Correlation, correlation, rounding_std
 from acutance.numerics.otf_modes import MeanOtf, ProcessModes
 from acutance.targets.periodic.bars_ends import TableModes, scattered_light
 from acutance.targets.periodic.bars_pixels import GroupPixels, group_columns
@@ -187,6 +187,7 @@ def _fit_otf(
     states = ProcessModes(mean.width_px)
     table_modes = TableModes.of(mean, states)
     before = _pixels_of(image, groups)
+    rounding = rounding_std(image[np.isfinite(image)])
     weights = [np.ones(one.value.size) for one in before]
     all_scattered = [np.zeros(one.value.size) for one in before]
     noise_found = Correlation(1.0, 0.0, 0.0)
@@ -201,7 +202,7 @@ def _fit_otf(
             levels, noise_found.inflation, earlier,
         )  # fmt: skip
         standard = fitted.residual / fitted.noise
-        again = reweighted(standard) if robust else weight
+        again = reweighted(standard, rounding / fitted.noise) if robust else weight
         noise_found = _correlation(standard, pixels)
         found = scattered_light(table_modes, fitted.otf, pixels)
         change = max(float(np.max(np.abs(a - b))) for a, b in zip(found, scattered, strict=True))

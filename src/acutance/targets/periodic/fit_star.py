@@ -22,7 +22,7 @@ from acutance.errors import NoStarError
 from acutance.geometry.star_geometry import SiemensStar
 from acutance.numerics.combined_prior import CombinedPrior
 from acutance.numerics.marginal_likelihood import Posterior
-from acutance.numerics.noise import Correlation, correlation
+from acutance.numerics.noise import Correlation, correlation, rounding_std
 from acutance.numerics.otf_kernels import blur_before
 from acutance.numerics.otf_modes import HIGHEST_CPP, MeanOtf, ProcessModes
 from acutance.numerics.shape_error import ShapeError
@@ -172,6 +172,7 @@ def solve_star(
     outer = star.rim_px - _RIM_MARGIN_PX
     rows, cols = _usable_pixels(image, star, inner, outer)
     value = image[rows, cols]
+    rounding = rounding_std(value)
     mean, level = _first_fit(image, star, inner, outer)
     if levels is not None:
         level = amplitude_of(levels.bright - levels.dark, wave)
@@ -193,7 +194,7 @@ def solve_star(
             design, value, weight, table, level, levels, noise_found.inflation, earlier, noise
         )
         standard = fitted.residual / fitted.noise
-        again = reweighted(standard) if robust else weight
+        again = reweighted(standard, rounding / fitted.noise) if robust else weight
         found = correlation(np.clip(standard, -4, 4), rows, cols)
         moved, step_px, step_rad = _moved(star, fitted.posterior, level)
         wider = _width_of_star(mean, fitted.otf)

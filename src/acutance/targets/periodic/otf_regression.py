@@ -69,9 +69,13 @@ def mean_variance(normal: Normal, few: int) -> float:
     return max(misfit / max(normal.count - few, 1.0), least)
 
 
-def reweighted(standard: Floats) -> Floats:
-    """Weights that bound outliers, (n,), of residuals in units of the noise, (n,)."""
-    return outlier_weights(standard / min(robust_scale(standard), 1.0))
+def reweighted(standard: Floats, rounding: float) -> Floats:
+    """Weights that bound outliers, (n,), of residuals in units of the noise, (n,).
+
+    `rounding` is what the steps of the image's numbers add to noise, in the same units: of noise
+    that is less than a step most residuals are nothing, and their bulk has no scale.
+    """
+    return outlier_weights(standard / max(min(robust_scale(standard), 1.0), rounding))
 
 
 def otf_prior(

@@ -9,7 +9,7 @@ from typing import Final
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 from acutance.numerics.clipping import clipped_share
-from acutance.numerics.noise import Correlation, outlier_share
+from acutance.numerics.noise import Correlation, outlier_share, smallest_step
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.periodic.curvature import DEPARTURE
 from acutance.targets.periodic.otf_model import FittedOtf
@@ -24,6 +24,7 @@ __all__ = [
     "level",
     "nonlinearity",
     "outliers",
+    "quantisation",
     "saturation",
     "stated_levels",
 ]
@@ -130,6 +131,30 @@ def saturation(
     clipped = clipped_share(value, saturation_level, noisy=snr <= QUIET_SNR)
     found = f"{100 * clipped:.1f} % of {pixels} are clipped at an end of the scale"
     return answer("saturation", clipped, found, limits)
+
+
+def quantisation(value: Floats, noise: float, correlation: Correlation, limits: Limits) -> Check:
+    """Noise in steps of the image's numbers.
+
+    Rounding that noise does not smooth is the same for pixels next to each other along the bars.
+
+    Parameters
+    ----------
+    value : (n,) array
+        Pixels of the pattern.
+    noise : float
+        Standard deviation of what the fit leaves, which holds that of rounding.
+    correlation : Correlation
+        Of what it leaves.
+    limits : mapping of str to float
+    """
+    step = smallest_step(value)
+    steps = noise / step if step > 0 else MAX_RATIO
+    if steps >= MAX_RATIO:
+        return answer("quantisation", MAX_RATIO, "the image's numbers are fine", limits)
+    own = math.sqrt(max(steps**2 * (1 - correlation.significant) - 1 / 12, 0.0))
+    found = f"the noise is {own:.2f} steps of the image's numbers"
+    return answer("quantisation", own, found, limits)
 
 
 def correlated_noise(correlation: Correlation, snr: float, limits: Limits, *, advice: str) -> Check:
