@@ -154,17 +154,21 @@ def find_spots(image: Floats) -> tuple[tuple[Spot, ...], Floats, float]:
 
 
 def _each_once(spots: Sequence[Spot]) -> tuple[Spot, ...]:
-    """Spots without those about the middle of one before them.
+    """Spots without those whose top touches that of one before them, about the same middle.
 
     A source halfway between two pixels has two tops where rounding or the want of noise makes them
-    equal.
+    equal. Tops apart from one another about one middle are those of no point.
     """
-    known = [one for one in spots if np.isfinite(one.row + one.col)]
-    if not known:
-        return tuple(spots)
-    pairs = cKDTree([(one.row, one.col) for one in known]).query_pairs(_SAME_PX)
-    again = {id(known[max(pair)]) for pair in pairs}
-    return tuple(one for one in spots if id(one) not in again)
+    if not spots:
+        return ()
+    touching = cKDTree([one.top for one in spots]).query_pairs(1.5)
+    again = {max(pair) for pair in touching if _away(spots[pair[0]], spots[pair[1]]) < _SAME_PX}
+    return tuple(one for number, one in enumerate(spots) if number not in again)
+
+
+def _away(one: Spot, other: Spot) -> float:
+    """From the middle of one spot to that of another, px."""
+    return float(np.hypot(one.row - other.row, one.col - other.col))
 
 
 def _lobes(tops: NDArray[np.intp], light: Floats) -> NDArray[np.bool_]:
@@ -375,7 +379,7 @@ def _compared(shape: SpotShape, narrow: float, wide: float) -> tuple[str, str] |
 
 def _crowded(one: Spot, others: Sequence[Spot], distance_px: float) -> tuple[str, str] | None:
     for other in others:
-        away = float(np.hypot(one.row - other.row, one.col - other.col))
+        away = _away(one, other)
         if _SAME_PX < away < distance_px and other.peak > tuned.LOBE_SHARE * one.peak:
             return "blended", f"another source is {away:.1f} px away, {distance_px:g} px are asked"
     return None
