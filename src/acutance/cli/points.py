@@ -43,8 +43,8 @@ def points(
         str | None,
         typer.Option(
             metavar="FILE",
-            help="Approximate places of the sources: CSV (row,col or lon,lat or x,y) or GeoJSON. "
-            "Found in the image without it.",
+            help="Approximate places of the sources: CSV (row,col or lon,lat or x,y), GeoJSON, or "
+            "the truth of a simulation. Found in the image without it.",
         ),
     ] = None,
     surveyed: Annotated[

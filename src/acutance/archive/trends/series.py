@@ -185,14 +185,10 @@ class Series(ShortRepr):
         """
         found = self.of(np.isfinite(self.value) & np.isfinite(self.when))
         if found.size == 0:
-            raise OptionError(
-                f"{self.title}: none of {self.size} measurements has "
-                + (
-                    "a date and a value: state when the images were acquired"
-                    if np.isfinite(self.value).any()
-                    else "a value: choose another metric; numbers on the ground need the GSD"
-                )
-            )
+            lacks = "a value: choose another metric; numbers on the ground need the GSD"
+            if np.isfinite(self.value).any():
+                lacks = "a date and a value: state when the images were acquired"
+            raise OptionError(f"{self.title}: none of {self.size} measurements has {lacks}")
         return found
 
     def summary(self) -> str:

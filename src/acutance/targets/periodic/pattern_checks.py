@@ -151,7 +151,8 @@ def quantisation(value: Floats, noise: float, correlation: Correlation, limits: 
     step = smallest_step(value)
     steps = noise / step if step > 0 else MAX_RATIO
     if steps >= MAX_RATIO:
-        return answer("quantisation", MAX_RATIO, "the image's numbers are fine", limits)
+        found = "the image's numbers are far finer than the noise"
+        return answer("quantisation", MAX_RATIO, found, limits)
     own = math.sqrt(max(steps**2 * (1 - correlation.significant) - 1 / 12, 0.0))
     found = f"the noise is {own:.2f} steps of the image's numbers"
     return answer("quantisation", own, found, limits)

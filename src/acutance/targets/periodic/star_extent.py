@@ -10,7 +10,7 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.errors import NoStarError
 from acutance.geometry.star_geometry import Flags, SiemensStar
-from acutance.targets.periodic.star_rings import members_of
+from acutance.targets.periodic.star_rings import members_of, sector_of
 
 __all__ = ["extent_of"]
 
@@ -29,7 +29,7 @@ def extent_of(smooth: Floats, usable: Flags, star: SiemensStar, inner: float) ->
     wave = np.cos(star.cycles * angle + star.alpha_rad)
     width = 2 * math.pi * _SECTOR_CYCLES / star.cycles
     sectors = round(2 * math.pi / width)
-    sector = ((angle + math.pi) / (2 * math.pi) * sectors).astype(np.intp) % sectors
+    sector = sector_of(angle, sectors)
     middle = radius < inner + 0.5 * (star.rim_px - inner)
     start = (radius > inner) & middle
     own = np.array([_slope(wave[s], value[s]) for s in members_of(sector, start, sectors)])

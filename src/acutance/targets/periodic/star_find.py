@@ -19,7 +19,7 @@ from acutance.errors import NoStarError
 from acutance.geometry.star_geometry import Flags, SiemensStar
 from acutance.targets.periodic.part_waves import PartWaves
 from acutance.targets.periodic.star_extent import extent_of
-from acutance.targets.periodic.star_rings import rings_of
+from acutance.targets.periodic.star_rings import rings_of, sector_of
 from acutance.targets.periodic.star_strength import PixelsAbout
 from acutance.targets.periodic.tuned import MIN_STAR_STRENGTH
 
@@ -256,7 +256,7 @@ def _cells(rings: Sequence[tuple[float, Floats, Floats]], cycles: int) -> Floats
     count = len(rings) * sectors
     ring = np.repeat(np.arange(len(rings)), [angle.size for _, angle, _ in rings])
     angle, value = (np.concatenate(column) for column in list(zip(*rings, strict=True))[1:])
-    cell = ring * sectors + ((angle + math.pi) / (2 * math.pi) * sectors).astype(np.intp) % sectors
+    cell = ring * sectors + sector_of(angle, sectors)
     waves = PartWaves.of(cell, cycles * angle, value - float(np.mean(value)), count)
     low, high = np.full(count, np.inf), np.full(count, -np.inf)
     np.minimum.at(low, cell, angle)

@@ -17,6 +17,7 @@ __all__ = [
     "members_of",
     "ring_modulations",
     "rings_of",
+    "sector_of",
     "shape_error",
 ]
 
@@ -51,6 +52,12 @@ def rings_of(
         if stop - start >= MIN_RING_PIXELS:
             found.append((float(np.mean(radius[here])), angle[here], value[here]))
     return found
+
+
+def sector_of(angle: Floats, count: int) -> NDArray[np.intp]:
+    """Which of some equal parts of a turn, from -pi on, each direction (n,) lies in."""
+    turns = (angle + math.pi) / (2 * math.pi)
+    return np.asarray((turns * count).astype(np.intp) % count)
 
 
 def members_of(sector: NDArray[np.intp], among: Flags, count: int) -> list[NDArray[np.intp]]:

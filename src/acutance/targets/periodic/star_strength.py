@@ -5,7 +5,6 @@ Two hundred numbers are tried, each in all parts of a dozen rings: the parts are
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +13,7 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.geometry.star_geometry import Flags
 from acutance.targets.periodic.part_waves import PartWaves
-from acutance.targets.periodic.star_rings import MIN_RING_PIXELS, RING_STEP_PX
+from acutance.targets.periodic.star_rings import MIN_RING_PIXELS, RING_STEP_PX, sector_of
 
 __all__ = ["PixelsAbout"]
 
@@ -71,7 +70,7 @@ class PixelsAbout:
         angle, value = self.angle[kept], self.value[kept]
         value = value - (np.bincount(ring, value) / sizes)[ring]
         power = float(np.sum(np.bincount(ring, value**2) / sizes))
-        part = ring * parts + ((angle + math.pi) / (2 * math.pi) * parts).astype(np.intp) % parts
+        part = ring * parts + sector_of(angle, parts)
         explained = _explained(part, cycles * angle, value, rings.size * parts)
         return min(float(np.sum(explained / np.repeat(sizes, parts))) / max(power, 1e-300), 1.0)
 
