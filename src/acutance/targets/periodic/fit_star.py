@@ -37,7 +37,7 @@ from acutance.targets.periodic.otf_regression import (
     weighted_normal,
 )
 from acutance.targets.periodic.star_kernels import KERNEL_REACH_PX, kernel_columns
-from acutance.targets.periodic.star_rings import ring_modulations, shape_error
+from acutance.targets.periodic.star_rings import first_radius, ring_modulations, shape_error
 from acutance.targets.periodic.star_waves import (
     BlurredStar,
     StarTable,
@@ -48,7 +48,6 @@ from acutance.targets.periodic.star_waves import (
 from acutance.targets.periodic.stated_contrast import Levels, StatedContrast, with_level
 from acutance.targets.periodic.tuned import (
     APERTURE_STD,
-    STAR_FINEST_CPP,
     STAR_NOISE_FLOOR,
     STAR_SHAPE_SHARE,
 )
@@ -168,11 +167,12 @@ def solve_star(
         If the star is too large, or too few pixels are usable.
     """
     _require_fitting(star)
-    inner = max(star.radius_at(STAR_FINEST_CPP), inner_px or 0.0, 1.5)
+    inner = first_radius(star, inner_px)
     outer = star.rim_px - _RIM_MARGIN_PX
     rows, cols = _usable_pixels(image, star, inner, outer)
     value = image[rows, cols]
-    rounding = rounding_std(value)
+    rounding, base = rounding_std(value), float(np.median(value))
+    above = value - base  # the prior of the background is one of contrasts
     mean, level = _first_fit(image, star, inner, outer)
     if levels is not None:
         level = amplitude_of(levels.bright - levels.dark, wave)
@@ -191,7 +191,7 @@ def solve_star(
         )  # fmt: skip
         design = _design(star, rows, cols, table, blurred, level)
         fitted = _regression(
-            design, value, weight, table, level, levels, noise_found.inflation, earlier, noise
+            design, above, weight, table, level, levels, noise_found.inflation, earlier, noise
         )
         standard = fitted.residual / fitted.noise
         again = reweighted(standard, rounding / fitted.noise) if robust else weight
@@ -218,7 +218,7 @@ def solve_star(
     stated, one = None, amplitude_of(1.0, wave)
     if levels is not None:
         free = _regression(
-            design, value, weight, table, level, None, noise_found.inflation, None, None
+            design, above, weight, table, level, None, noise_found.inflation, None, None
         ).otf
         stated = StatedContrast(levels, Estimate(free.level / one, free.level_std / one))
     contrast = fitted.otf.level / one
@@ -227,7 +227,7 @@ def solve_star(
     curvature = find_curvature(fitted, spokes + 0.5 * contrast, contrast, weight, inflation)
     _, angle = star.polar(rows.astype(float), cols.astype(float))
     uneven = uneven_sides(fitted, spokes, angle, fitted.posterior.beta[1:3], weight, inflation)
-    middle = float(np.mean(design[:, :_BACKGROUND] @ fitted.posterior.beta[:_BACKGROUND]))
+    middle = base + float(np.mean(design[:, :_BACKGROUND] @ fitted.posterior.beta[:_BACKGROUND]))
     col_std, row_std = (np.linalg.norm(fitted.posterior.factor[_PLACE], axis=1) / level).tolist()
     return StarSolution(
         star, (row_std, col_std), otf, rows, cols, value, fitted.residual, fitted.noise,

@@ -15,7 +15,8 @@ from acutance.errors import NoStarError, OptionError
 from acutance.numerics.one_thread import one_thread
 from acutance.raster import Gsd, Image
 from acutance.targets.options import chosen_options
-from acutance.targets.periodic.fit_star import StarSolution, amplitude_of, solve_star
+from acutance.targets.periodic.fit_star import StarSolution, amplitude_of
+from acutance.targets.periodic.star_centre import solve_spokes
 from acutance.targets.periodic.star_checks import star_checks
 from acutance.targets.periodic.star_find import find_star
 from acutance.targets.periodic.star_measurement import Rings, StarDetails, StarMeasurement
@@ -72,7 +73,7 @@ def measure_star(
     _require_cycles(cycles)
     region = read_region(image, roi, gsd_m)
     found = find_star(region.pixels, cycles, _in_region(chosen.centre, region))
-    solved = solve_star(
+    solved = solve_spokes(
         region.pixels, found, wave=chosen.wave, levels=chosen.levels,
         inner_px=chosen.inner_px, robust=chosen.robust,
     )  # fmt: skip

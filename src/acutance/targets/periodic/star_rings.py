@@ -10,10 +10,12 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.geometry.star_geometry import Flags, SiemensStar
 from acutance.numerics.shape_error import ShapeError
+from acutance.targets.periodic.tuned import STAR_FINEST_CPP
 
 __all__ = [
     "MIN_RING_PIXELS",
     "RING_STEP_PX",
+    "first_radius",
     "members_of",
     "ring_modulations",
     "rings_of",
@@ -23,6 +25,7 @@ __all__ = [
 
 RING_STEP_PX = 1.0
 MIN_RING_PIXELS = 12
+_MIN_INNER_PX = 1.5
 _CHANCE = 1.5
 """Deviations by which the residuals' spokes have to exceed what noise makes."""
 _ALONG_AXES = 2.0
@@ -32,6 +35,11 @@ _TURNS = np.arange(2, 18, 2)
 """Even angular orders: transfer has the same modulus in opposite directions."""
 _MIN_PIXELS = 34
 _MIN_SINGULAR = 0.1
+
+
+def first_radius(star: SiemensStar, inner_px: float | None) -> float:
+    """Where a star begins to be used: inside, its spokes are too fine, or stated to end."""
+    return max(star.radius_at(STAR_FINEST_CPP), inner_px or 0.0, _MIN_INNER_PX)
 
 
 def rings_of(
