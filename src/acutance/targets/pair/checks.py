@@ -23,10 +23,12 @@ from acutance.targets.pair.grid import PairGrid
 from acutance.targets.pair.kernel_fit import KernelFit
 from acutance.targets.pair.kernel_otf import KernelOtf
 from acutance.targets.pair.local import LocalFit
+from acutance.targets.pair.rounding import detail_in_steps
 from acutance.targets.pair.spectral_ratio import PairSpectra
 from acutance.targets.processing_checks import PROCESSING_CHECKS, image_processing_checks
+from acutance.targets.processing_traces import sample_boxes
 from acutance.targets.record import ImageInfo
-from acutance.targets.region import stated_gsd, undeclared_fill
+from acutance.targets.region import read_data, stated_gsd, undeclared_fill
 
 __all__ = ["PAIR_CHECKS", "check_pair"]
 
@@ -46,6 +48,7 @@ PAIR_CHECKS = (
     "inflation",
     "saturation",
     "undeclared_fill",
+    "quantisation",
     "stated_gsd",
     *PROCESSING_CHECKS,
     "iteration_change",
@@ -118,6 +121,7 @@ def check_pair(
             "saturation", clipped, f"{100 * clipped:.2f} % of an image's pixels are clipped", limits
         ),
         undeclared_fill(fills, limits),
+        _quantisation(images, limits),
         stated_gsd(info, limits),
         *image_processing_checks(images, limits),
         _iteration(gaussian, stop_change, limits),
@@ -243,6 +247,26 @@ def _equal_blur(difference: Estimate, limits: Limits) -> Check:
             f"than that of weak ones by a variance of {size} low pixels squared"
         )
     return answer("equal_blur", sigmas, found, limits)
+
+
+def _quantisation(images: Sequence[tuple[Image, Box]], limits: Limits) -> Check:
+    """How much the image of the fewer grey levels changes from pixel to pixel."""
+    steps = [
+        detail_in_steps(read_data(image, part)[0] for part in sample_boxes(box))
+        for image, box in images
+    ]
+    least = min(steps)
+    if least >= MAX_RATIO:
+        found = "the images' numbers are finer than what changes from pixel to pixel"
+        return answer("quantisation", MAX_RATIO, found, limits)
+    which = "low" if least == steps[0] else "high"
+    return answer(
+        "quantisation", least,
+        f"pixels of the {which} image differ from the mean of their neighbours by {least:.2f} "
+        "steps of its numbers, rounding taken off", limits,
+        advice="rounded images have contours at the same places, and the MTF is too high; use "
+        "data of more bits",
+    )  # fmt: skip
 
 
 def _iteration(gaussian: GaussianFit, stop_change: float, limits: Limits) -> Check:
