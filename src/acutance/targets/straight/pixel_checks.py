@@ -44,6 +44,8 @@ __all__ = [
 
 
 _FEW = 512
+_CLOSE_SHARE = 0.5
+"""Values next to the end over those at it: .7 and more of wings that end, .2 of clips."""
 
 
 def saturation(
@@ -91,7 +93,17 @@ def _quiet(data: CheckData, values: Floats, side: Floats) -> bool:
     contrast = abs(data.fit.bright - data.fit.dark)
     if _transition_noise(data) * contrast < ROUNDED_NOISE * rounding_std(values):
         return True
-    return float(np.std(side)) < QUIET_SIDE * contrast and _is_noise_free(data)
+    if not _is_noise_free(data):
+        return False
+    return float(np.std(side)) < QUIET_SIDE * contrast or _is_approached(side, contrast)
+
+
+def _is_approached(side: Floats, contrast: float) -> bool:
+    """Whether values run into the largest one, as wings that end do: clipping cuts a slope off."""
+    end = np.max(side)
+    piled = np.count_nonzero(side == end)
+    close = np.count_nonzero(side > end - MAX_FINE_STEP * contrast) - piled
+    return bool(close > _CLOSE_SHARE * piled)
 
 
 def _is_noise_free(data: CheckData) -> bool:
