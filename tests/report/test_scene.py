@@ -9,6 +9,7 @@ import pytest
 from test_every_kind import scene
 from test_figures import outside, overlaps, texts
 
+from acutance.errors import OptionError, RegionError
 from acutance.report import draw, figure_bytes, page, panels, reasons_text, text
 from acutance.report.figures.scene_population import expected_counts, scatter_of
 from acutance.report.figures.scene_sensor import EdgesSeen, edges_seen, sensor_along
@@ -66,6 +67,34 @@ def test_the_sensor_at_many_places_is_that_of_each(measured):
         assert edges.sensor[i] == pytest.approx(float(np.abs(otf[0])), abs=1e-4)
 
 
+def test_the_sensor_at_many_places_takes_lists_of_any_shape(measured):
+    top, left, height, _ = measured.image.roi
+    rows, cols, normal = [top, top + height - 1], [left + 3, left], [0.0, 90.0]
+    found = measured.mtf_nyquist_at(rows, cols, normal)
+    each = [float(measured.mtf_nyquist_at(*one)) for one in zip(rows, cols, normal, strict=True)]
+    assert found == pytest.approx(each, abs=1e-12)
+    place = measured.at(rows[0], cols[0])
+    assert each[0] == pytest.approx(place.across.mtf_nyquist.value, abs=1e-4)
+    # One direction serves all places.
+    assert measured.mtf_nyquist_at([rows] * 3, [cols] * 3, 0.0).shape == (3, 2)
+
+
+@pytest.mark.parametrize(
+    ("row", "col", "normal_deg", "error", "words"),
+    [
+        ([5.0, -3.0], [5.0, 5.0], 0.0, RegionError, "row -3, column 5 lies outside of what was"),
+        ([np.nan], [5.0], 0.0, RegionError, "row nan, column 5 lies outside"),
+        ([5.0, 6.0], [5.0, 6.0, 7.0], 0.0, OptionError, r"shapes differ, row \(2,\), col \(3,\)"),
+        ("a", 5.0, 0.0, OptionError, "row is 'a'"),
+        (5.0, 5.0, np.inf, OptionError, "normal_deg holds NaN or infinity"),
+    ],
+)
+def test_places_that_are_none_are_refused_in_words(measured, row, col, normal_deg, error, words):
+    for ask in (measured.mtf_nyquist_at, measured.mtf_nyquist_seen):
+        with pytest.raises(error, match=words):
+            ask(row, col, normal_deg)
+
+
 def test_the_sensor_along_the_axes_has_its_stated_numbers(measured):
     for name, angle_deg in measured.axes_deg.items():
         mtf, std = sensor_along(measured, np.array([angle_deg]))
@@ -115,6 +144,25 @@ def test_a_map_is_drawn_on_a_quick_look(measured):
     empty = np.full((5, 5), np.nan)
     assert not panel_axes(measured, PANELS[0], backdrop=empty)[0][0].images
     assert "data:image" in page(measured, backdrop=quick)
+
+
+def test_a_quick_look_may_be_a_list_or_have_masked_pixels(measured):
+    quick = RNG.normal(100.0, 5.0, (60, 70))
+    (image,) = panel_axes(measured, PANELS[0], backdrop=quick.tolist())[0][0].images
+    assert np.array_equal(image.get_array(), quick)
+    hidden = np.ma.masked_greater(quick, 105.0)
+    (image,) = panel_axes(measured, PANELS[0], backdrop=hidden)[0][0].images
+    assert np.array_equal(np.ma.getmaskarray(image.get_array()), hidden.mask)
+
+
+@pytest.mark.parametrize("shape", [(5,), (4, 5, 3), (0, 5)])
+def test_what_is_no_image_of_one_band_is_no_quick_look(measured, shape):
+    words = re.escape(f"backdrop has shape {shape}: give an image of one band, (rows, columns)")
+    for show in (draw, page):
+        with pytest.raises(OptionError, match=words):
+            show(measured, backdrop=np.zeros(shape))
+    with pytest.raises(OptionError, match=r"backdrop is 'quick\.png': it has to hold numbers"):
+        draw(measured, backdrop="quick.png")
 
 
 def test_directions_are_those_of_the_image_and_all_dots_are_inside(measured):

@@ -186,7 +186,11 @@ def _every_target(
     result = kind.load(str(kind.measure_all))(image, region, **given)
     if not result.measurements:
         tried = len(result.rejected)
-        why = f"; of {tried} tried the first: {result.rejected[0].reason}" if tried else ""
+        why = (
+            f"; of {tried} tried the first: {result.rejected[0].reason}"
+            if tried
+            else ": nothing straight stands out: the region is flat, or its edges are too short"
+        )
         raise NoEdgeError(
             f"no {kind.name} of {image.path} could be measured{why}. Choose a region around one "
             "target"

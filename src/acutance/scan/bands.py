@@ -126,7 +126,7 @@ class BandScenes(ShortRepr):
 
 def scan_bands(
     image: str | os.PathLike[str] | Sequence[Image | ArrayLike] | NDArray[Any],
-    bands: Sequence[int] | None = None,
+    bands: Sequence[int | str] | None = None,
     *,
     roi: RoiLike = None,
     gsd_m: float | Gsd | None = None,
@@ -145,8 +145,9 @@ def scan_bands(
     ----------
     image : path, sequence of Image or (bands, rows, cols) array_like
         Bands of one grid, displaced by less than about 2 pixels.
-    bands : sequence of int, optional
-        Which bands, from 1; all of them without it (a band of transparency is none).
+    bands : sequence of int or str, optional
+        Which bands, by their numbers, from 1, or of a file by their names, too; all of them without
+        it (a band of transparency is none).
     roi : Region, Box, (row, col, height, width), (n, 2) corners or None
         Part of the image.
     gsd_m : float or Gsd, optional
@@ -242,7 +243,7 @@ def _shifts(
     return shifts, tuple(unshifted)
 
 
-def _bands(image: Any, bands: Sequence[int] | None) -> dict[str, Image]:
+def _bands(image: Any, bands: Sequence[int | str] | None) -> dict[str, Image]:
     """The bands by their numbers.
 
     Raises

@@ -178,10 +178,10 @@ class Field(ShortRepr):
         row, col, height, width = self.roi
         return _middles(row, height, rows), _middles(col, width, cols)
 
-    def holds(self, row: float, col: float) -> bool:
-        """Whether a place lies in the field."""
-        x, y = self.places(np.array(row), np.array(col))
-        return bool(abs(x) <= 1.0 and abs(y) <= 1.0)
+    def holds(self, row: Floats, col: Floats) -> NDArray[np.bool_]:
+        """Whether places lie in the field."""
+        x, y = self.places(row, col)
+        return np.asarray((np.abs(x) <= 1.0) & (np.abs(y) <= 1.0))
 
     def summary(self) -> str:
         """How likely it is that nothing changes."""

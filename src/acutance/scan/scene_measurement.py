@@ -10,8 +10,10 @@ from numbers import Real
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from acutance.curves import Estimate, Mtf, Otf2d, Response
+from acutance.arguments import require_floats
+from acutance.curves import Estimate, Mtf, Otf2d, OtfModel, Response
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError, RegionError
@@ -135,12 +137,8 @@ class SceneMeasurement(Measurement):
         for name, value in (("row", row), ("col", col)):
             if isinstance(value, bool) or not isinstance(value, Real | np.number):
                 raise RegionError(f"{name} is {value!r:.80}: give a number of pixels")
-        if not self.field.holds(row, col):
-            top, left, height, width = self.field.roi
-            raise RegionError(
-                f"row {row:g}, column {col:g} lies outside of what was scanned, rows {top} to "
-                f"{top + height - 1} and columns {left} to {left + width - 1}: give a place in it"
-            )
+        if not self.field.holds(np.array(row), np.array(col)):
+            raise self._outside(row, col)
         model = self.field.at(self._mean.base, row, col)
         return ScenePlace(row, col, Otf2d(model, self.otf.gsd_m), self.axes_deg)
 
@@ -158,13 +156,55 @@ class SceneMeasurement(Measurement):
         row, col = self.field.grid(rows, cols)
         return tuple(self.at(float(i), float(j)) for i in row for j in col)
 
-    def mtf_nyquist_at(self, row: Floats, col: Floats, normal_deg: Floats) -> Floats:
-        """MTF at Nyquist at places (n,) along normals (n,): that of `at`, of many at once."""
-        return self.field.mtf_nyquist(self._mean.base, row, col, normal_deg)
+    def mtf_nyquist_at(self, row: ArrayLike, col: ArrayLike, normal_deg: ArrayLike) -> Floats:
+        """MTF at Nyquist at places along normals: that of `at`, of many at once.
 
-    def mtf_nyquist_seen(self, row: Floats, col: Floats, normal_deg: Floats) -> Floats:
+        Parameters
+        ----------
+        row, col : array_like
+            In pixels of the image; integers are pixel centres.
+        normal_deg : array_like
+            From the column axis (0: across) towards the row axis (90: along); one number serves
+            all places.
+
+        Raises
+        ------
+        RegionError
+            If a place lies outside of what was scanned.
+        OptionError
+            If these are no numbers, or as many as do not fit together.
+        """
+        return self._at_nyquist(self._mean.base, row, col, normal_deg)
+
+    def mtf_nyquist_seen(self, row: ArrayLike, col: ArrayLike, normal_deg: ArrayLike) -> Floats:
         """The same as edges show it: behind the softness that is stated of all objects."""
-        return self.field.mtf_nyquist(as_in_image(self._mean.base), row, col, normal_deg)
+        return self._at_nyquist(as_in_image(self._mean.base), row, col, normal_deg)
+
+    def _at_nyquist(
+        self, base: OtfModel, row: ArrayLike, col: ArrayLike, normal_deg: ArrayLike
+    ) -> Floats:
+        given = {"row": row, "col": col, "normal_deg": normal_deg}
+        numbers = [require_floats(name, values) for name, values in given.items()]
+        try:
+            rows, cols, normals = np.broadcast_arrays(*numbers)
+        except ValueError:
+            pairs = zip(given, numbers, strict=True)
+            sizes = ", ".join(f"{name} {values.shape}" for name, values in pairs)
+            raise OptionError(f"shapes differ, {sizes}: give each place a direction") from None
+        outside = np.flatnonzero(~self.field.holds(rows, cols))
+        if outside.size:
+            raise self._outside(rows.flat[outside[0]], cols.flat[outside[0]])
+        if not np.all(np.isfinite(normals)):
+            raise OptionError("normal_deg holds NaN or infinity: give finite numbers of degrees")
+        found = self.field.mtf_nyquist(base, rows.ravel(), cols.ravel(), normals.ravel())
+        return found.reshape(rows.shape)
+
+    def _outside(self, row: float, col: float) -> RegionError:
+        top, left, height, width = self.field.roi
+        return RegionError(
+            f"row {row:g}, column {col:g} lies outside of what was scanned, rows {top} to "
+            f"{top + height - 1} and columns {left} to {left + width - 1}: give a place in it"
+        )
 
     @property
     def _mean(self) -> FieldOtf:

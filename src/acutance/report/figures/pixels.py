@@ -6,16 +6,38 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from acutance.arguments import require_floats
 from acutance.curves.grid import Floats
+from acutance.errors import OptionError
 from acutance.report.paper import SHADE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["draw_residual_map", "show_pixels"]
+__all__ = ["as_backdrop", "draw_residual_map", "show_pixels"]
 
 MAX_SIGMAS = 4.0
+
+
+def as_backdrop(pixels: ArrayLike | None) -> Floats | None:
+    """The pixels to draw a result on, as a caller has them; masked ones are NaN.
+
+    Raises
+    ------
+    OptionError
+        If they are no image of one band.
+    """
+    if pixels is None:
+        return None
+    shown = require_floats("backdrop", pixels)
+    if shown.ndim != 2 or not shown.size:
+        raise OptionError(
+            f"backdrop has shape {shown.shape}: give an image of one band, (rows, columns)"
+        )
+    hidden = pixels.mask if isinstance(pixels, np.ma.MaskedArray) else False
+    return np.where(hidden, math.nan, shown)
 
 
 def show_pixels(axes: Axes, pixels: Floats, row: int, col: int) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.report.figures.panel import Panel
+from acutance.report.figures.pixels import as_backdrop
 from acutance.report.figures.scene_sensor import behind_words, edges_seen
 from acutance.report.paper import INK, SKY, VERMILION
 
@@ -37,6 +38,7 @@ _HEIGHT_IN = 5.4
 
 def map_panel(measurement: SceneMeasurement, backdrop: Floats | None = None) -> Panel:
     """The map of a scene, on a quick look at what was scanned if there is one (rows, cols)."""
+    shown = as_backdrop(backdrop)
     edges = measurement.edges
     used = int(edges.used.sum())
     steps = [_step(used), _step(edges.size - used)]
@@ -55,7 +57,7 @@ def map_panel(measurement: SceneMeasurement, backdrop: Floats | None = None) -> 
         + thinned
         + lengthened
         + behind_words(measurement),
-        lambda page: _draw(page, measurement, backdrop),
+        lambda page: _draw(page, measurement, shown),
         height_in=_HEIGHT_IN,
         is_target=True,
     )
@@ -133,7 +135,7 @@ def _gain(count: int) -> float:
 def _draw_backdrop(axes: Axes, pixels: Floats, extent: tuple[float, float, float, float]) -> None:
     """An image in middle greys: the colours of edges stand out from them."""
     step = max(1, math.ceil(max(pixels.shape) / _MAX_PIXELS))
-    shown = np.ma.masked_invalid(np.asarray(pixels[::step, ::step], float))
+    shown = np.ma.masked_invalid(pixels[::step, ::step])
     if not shown.count():
         return
     low, high = np.percentile(shown.compressed(), (1.0, 99.0))

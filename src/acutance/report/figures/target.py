@@ -10,7 +10,7 @@ import numpy as np
 
 from acutance.errors import OptionError
 from acutance.report.figures.curves import COLORS, TWO_SIDED_95, band_edges, mark_frequencies
-from acutance.report.figures.pixels import show_pixels
+from acutance.report.figures.pixels import as_backdrop, show_pixels
 from acutance.report.figures.writing import write_grid
 from acutance.report.labels import count_edges, describe_image, word_estimate
 from acutance.report.paper import (
@@ -72,9 +72,8 @@ def target_figure(
             f"there is nothing to draw: none of the {len(result.rejected)} edges tried was "
             f"measured{reasons}. Print the result as text or JSON instead"
         )
-    pixels, (row, col) = (
-        (backdrop, origin) if backdrop is not None else _mosaic(result.measurements)
-    )
+    shown = as_backdrop(backdrop)
+    pixels, (row, col) = (shown, origin) if shown is not None else _mosaic(result.measurements)
     with styled():
         figure = new_page(13.0, 6.2 if on_page else 8.4)
         left, right = split_page(figure, 1, 2, widths=(1.0, 1.05))
