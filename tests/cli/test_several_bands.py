@@ -155,6 +155,27 @@ def test_bands_are_opened_by_their_names(named):
         open_bands(named, bands=["B3", 2])
 
 
+@pytest.mark.parametrize(
+    ("names", "asked", "found"),
+    [
+        (("Pan", "Pan", "Red"), "pan", "name of 2 bands of .*: give a number, as 1 and 2"),
+        (("b", "B", "B "), "b", 1),
+        (("b", "B", "c"), "B", 2),
+        (("2", "1", "3"), 2, 2),
+    ],
+)  # fmt: skip
+def test_a_name_of_two_bands_is_the_name_of_none(image, tmp_path, names, asked, found):
+    place = tmp_path / "alike.tif"
+    with open_quietly(image) as source, open_quietly(place, "w", **source.profile) as written:
+        written.write(source.read())
+        written.descriptions = names
+    if isinstance(found, int):
+        assert ac.open_image(place, band=asked).band == found
+    else:
+        with pytest.raises(ac.errors.ImageError, match=found):
+            ac.open_image(place, band=asked)
+
+
 def test_the_band_of_a_finer_image_is_called_by_its_name(acutance, named, tmp_path, monkeypatch):
     seen = []
 

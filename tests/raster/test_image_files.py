@@ -344,6 +344,27 @@ def test_pixels_that_are_no_grey_levels(pixels, write_raster):
         open_image(path)
 
 
+def test_a_palette_of_greys_holds_grey_levels(pixels, write_raster):
+    levels = (pixels % 256).astype(np.uint8)
+    path = write_raster("grey.bmp", levels, "BMP")
+    with warnings.catch_warnings(action="ignore"), rasterio.open(path) as dataset:
+        assert dataset.colorinterp == (ColorInterp.palette,)
+    assert np.array_equal(open_image(path).read(), levels)
+    clear = {value: (value, value, value, 0 if value == 7 else 255) for value in range(256)}
+    path = write_raster(
+        "clear.png", levels, "PNG",
+        edit=lambda dataset: dataset.write_colormap(1, clear), photometric="palette",
+    )  # fmt: skip
+    with pytest.raises(ImageError, match="palette indices"):
+        open_image(path)
+
+
+def test_several_arrays_in_one_file_are_no_packed_images(pixels, tmp_path):
+    np.savez(tmp_path / "two.npz", a=pixels, b=pixels)
+    with pytest.raises(ImageError, match="several arrays of NumPy: save the image by itself"):
+        open_image(tmp_path / "two.npz")
+
+
 def test_all_bands_are_opened_but_that_of_transparency(pixels, write_raster):
     def declare(dataset):
         dataset.colorinterp = [ColorInterp.red, ColorInterp.green, ColorInterp.alpha]

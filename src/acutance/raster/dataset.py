@@ -193,6 +193,8 @@ def read_in_our_words(path: str) -> Iterator[None]:
 def _advice(path: str) -> str:
     if Path(path).is_dir():
         return "it is a directory; give the image file inside it"
+    if Path(path).suffix.lower() == ".npz":
+        return "it holds several arrays of NumPy: save the image by itself, with numpy.save"
     if Path(path).suffix.lower() in _DOCUMENTS:
         return (
             "it seems to be a document of metadata: give the image that it is of; acutance image "
@@ -238,11 +240,16 @@ def _require_band(dataset: Any, path: str, band: int) -> None:
             f"band {band} of {path} holds complex values ({dtype}), not real numbers: "
             "write its modulus to a file first"
         )
-    if _color_meanings(dataset)[band - 1] == ColorInterp.palette:
+    if _color_meanings(dataset)[band - 1] == ColorInterp.palette and not _is_grey(dataset, band):
         raise ImageError(
             f"band {band} of {path} holds palette indices, not grey levels: "
             "expand it first, for example with gdal_translate -expand gray"
         )
+
+
+def _is_grey(dataset: Any, band: int) -> bool:
+    """Whether every entry of a palette is the grey of its index, as in BMP without colours."""
+    return all(color == (i, i, i, 255) for i, color in dataset.colormap(band).items())
 
 
 def _color_meanings(dataset: Any) -> tuple[ColorInterp, ...]:

@@ -82,6 +82,8 @@ def band_names(image: Image) -> tuple[str, ...] | None:
 def band_numbers(image: Image, bands: Sequence[int | str]) -> list[int]:
     """Numbers of bands that are given by number, or by name in letters of either case.
 
+    Of names that differ by their case alone the one that is written so is meant.
+
     Parameters
     ----------
     image : Image
@@ -91,21 +93,29 @@ def band_numbers(image: Image, bands: Sequence[int | str]) -> list[int]:
     Raises
     ------
     ImageError
-        If the file has no band of a name.
+        If the file has no band of a name, or several.
     """
     names = band_names(image) or ()
-    by_name = {name.casefold(): number for number, name in enumerate(names, start=1)}
-    numbers = []
-    for asked in bands:
-        number = by_name.get(asked.casefold()) if isinstance(asked, str) else asked
-        if number is None:
-            there = ", ".join(names) or f"{image.band_count}, without names"
-            raise ImageError(
-                f"band {asked!r:.80} is not the number of a band, from 1 to {image.band_count}, "
-                f"nor the name of one: the bands of {image.path} are {there}"
-            )
-        numbers.append(number)
-    return numbers
+    return [_named(one, names, image) if isinstance(one, str) else one for one in bands]
+
+
+def _named(asked: str, names: Sequence[str], image: Image) -> int:
+    """The number of the band of a name."""
+    alike = [i for i, name in enumerate(names, 1) if name.casefold() == asked.casefold()]
+    found = [i for i in alike if names[i - 1] == asked] or alike
+    if not found:
+        there = ", ".join(names) or f"{image.band_count}, without names"
+        raise ImageError(
+            f"band {asked!r:.80} is not the number of a band, from 1 to {image.band_count}, "
+            f"nor the name of one: the bands of {image.path} are {there}"
+        )
+    if len(found) > 1:
+        numbers = " and ".join(str(one) for one in found[:3])
+        raise ImageError(
+            f"band {asked!r:.80} is the name of {len(found)} bands of {image.path}: give a number, "
+            f"as {numbers}"
+        )
+    return found[0]
 
 
 def _of_geolocation(image: Image, name: str) -> Findings:
