@@ -55,6 +55,15 @@ def test_edges_are_written_as_a_layer_and_may_be_long_ones_alone(
     assert min(feature["properties"]["length_px"] for feature in features) >= 25
 
 
+def test_the_help_has_the_lengths_that_are_taken(acutance, refused, scene):
+    words = " ".join(acutance("scan", "--help").stdout.split())
+    least, most = map(int, re.search(r"usable\. (\d+) to (\d+): long edges", words).groups())
+    for length in (least, most):
+        assert ac.ScanOptions(min_length_px=length).min_length_px == length
+    for length in (least - 1, most + 1):
+        refused(("scan", scene, "--min-length", length), f"is {length}")
+
+
 @pytest.fixture(scope="module")
 def colours(scene):
     """A part of the scene in two bands, the second of opposite contrast."""

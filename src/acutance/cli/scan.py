@@ -130,7 +130,7 @@ def scan(
         typer.Option(
             metavar="PX",
             help="Shorter edges are left out, as they are found; of others a shorter part may be "
-            "usable.",
+            "usable. 8 to 42: long edges are cut into pieces.",
         ),
     ] = 15.0,
     field: Annotated[
