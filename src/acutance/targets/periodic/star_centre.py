@@ -33,6 +33,8 @@ _SEEN_SIGMAS: Final = 3.0
 """Deviations from which on a ring has spokes, and lacks those that are predicted."""
 _FINEST_CPP: Final = 0.85
 """Of spokes that are finer a blank middle takes nothing that matters below Nyquist."""
+_MIN_BLANK_PX: Final = 3.0
+"""A smaller middle is as wide as the blur: spokes of few cycles have none there anyway."""
 _MARGIN_PX: Final = 3.5
 """From the outermost blank ring to the pixels that a blank middle does not reach."""
 _DIRECTIONS_DEG: Final = np.arange(0.0, 180.0, 5.0)
@@ -50,9 +52,7 @@ def solve_spokes(
     """Solve a star as far as its spokes reach; parameters and errors of `solve_star`."""
 
     def solved(inner: float | None) -> StarSolution:
-        return solve_star(
-            image, star, wave=wave, levels=levels, inner_px=inner, robust=robust
-        )  # fmt: skip
+        return solve_star(image, star, wave=wave, levels=levels, inner_px=inner, robust=robust)
 
     blank_px = _blank_radius(image, star, inner_px)
     if blank_px is not None:
@@ -84,7 +84,8 @@ def _blank_radius(image: Floats, star: SiemensStar, inner_px: float | None) -> f
         or beyond[end] < 4 * noise[end]
     ):
         return None
-    return star.radius_at(float(freq[end]))
+    radius = star.radius_at(float(freq[end]))
+    return radius if radius >= _MIN_BLANK_PX else None
 
 
 def _lacks_spokes(image: Floats, solved: StarSolution, blank_px: float) -> bool:
