@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -33,6 +35,8 @@ __all__ = ["BARS_METHODS", "measure_bars"]
 
 BARS_METHODS = ("joint",)
 _ONE_DIRECTION_DEG = 20.0
+_MAX_OTHER_PATTERN = {"stated": 1.0, "found": 0.15}
+"""Pattern that is left, relative to what bars explain. Checkerboards leave .2 and more."""
 
 
 @one_thread
@@ -77,7 +81,9 @@ def measure_bars(
     solved = solve_bars(
         region.pixels, groups, contrast=contrast, levels=chosen.levels, robust=chosen.robust
     )
-    _require_bars(solved)
+    how: Literal["stated", "found"] = "stated" if chosen.groups else "found"
+    _require_bars(solved, how)
+    _require_near(groups, solved, how)
     directions = common_normals(tuple(one.bars for one in solved.groups), region.info.along_track)
     return BarsMeasurement(
         kind="bars",
@@ -129,18 +135,34 @@ def _contrast(image: Floats, groups: tuple[Bars, ...]) -> float:
     return contrast
 
 
-def _require_bars(solved: BarsSolution) -> None:
-    """Refuse groups in which more of another pattern is left than bars explain."""
+def _require_bars(solved: BarsSolution, how: Literal["stated", "found"]) -> None:
+    """Refuse groups in which a large share of another pattern is left beside the bars."""
     whole = float(np.var(np.concatenate([one.value for one in solved.groups])))
     left = float(np.var(np.concatenate(solved.residuals)))
     # Noise does not correlate from pixel to pixel; what does is a pattern.
-    if solved.correlation.strongest * left > whole - left:
+    if solved.correlation.strongest * left > _MAX_OTHER_PATTERN[how] * (whole - left):
         raise NoBarsError(
             f"what was taken for groups of bars is another pattern: bars explain "
             f"{max(100 * (1 - left / whole), 0):.0f} % of its variance, and neighbouring pixels of "
             f"the rest correlate by {solved.correlation.strongest:.2f}; choose a region that holds "
             "the groups and some background around each, or state where they are (groups)"
         )
+
+
+def _require_near(
+    groups: tuple[Bars, ...], solved: BarsSolution, how: Literal["stated", "found"]
+) -> None:
+    """Refuse groups that settled elsewhere than where they were stated, or found, to be."""
+    for number, (one, fitted) in enumerate(zip(groups, solved.groups, strict=True), 1):
+        other = fitted.bars
+        across, _ = one.across_and_along(np.array([other.row]), np.array([other.col]))
+        moved, scale = float(across[0]), other.period_px / one.period_px
+        if abs(moved) > 0.75 * one.period_px or abs(scale - 1) > 0.6 / one.count:
+            raise NoBarsError(
+                f"group {number} was {how} with a period of {one.period_px:.2f} px at row "
+                f"{one.row:.1f}, column {one.col:.1f}; the pixels fit {other.period_px:.2f} px, "
+                f"{moved:+.1f} px away: check its place, its number of bars and its period"
+            )
 
 
 def common_normals(groups: tuple[Bars, ...], along_track: AlongTrack = "y") -> tuple[float, ...]:

@@ -1,162 +1,202 @@
-"""The effect of the ends of the bars: light that is scattered along the bars."""
+"""The effect of the ends of the bars: light that is scattered along them, mode by mode.
+
+The wider a mode scatters, the more of its light goes over the ends of the bars: to the image of
+endless bars it adds little inside them, or takes most of it away. So the ends belong to the images
+of the modes, not to those of the transfer function that was fitted before.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import map_coordinates
+from scipy.sparse import csr_array
 
 from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.geometry.bar_group import Bars
-from acutance.numerics.otf_modes import Complexes, MeanOtf, ProcessModes
-from acutance.targets.periodic.bars_pixels import GroupPixels
-from acutance.targets.periodic.otf_model import FittedOtf, all_modes, mode_count
+from acutance.numerics.lookup import CubicLookup
+from acutance.numerics.otf_modes import MeanOtf, ProcessModes
+from acutance.targets.periodic.otf_model import all_modes, mode_count
 
-__all__ = ["TableModes", "scattered_light"]
+__all__ = ["EndEffect", "end_effects"]
 
-_ACROSS_CPP: Final = 1.0
+_ACROSS_CPP: Final = 0.6
+"""Light that comes from beyond the ends shows no finer bars."""
 _ALONG_CPP: Final = 1.2
-_GRID_PX: Final = 0.5
-_PADDING_PX: Final = 32
-_COARSE_CPP: Final = 0.25
-_TABLE_CPP: Final = 0.02
-_TABLE_SIZE: Final = 88
+"""Ends are 5 px away from the pixels: from half of it frequencies fade out."""
+_ACROSS_PX: Final = 0.5
+_NEAR_PX: Final = 6.0
+"""Up to here from an end places stand a pixel apart, beyond in proportion to the distance."""
+_PADDING_PX: Final = 30.0
+_ONE_DIRECTION_DEG: Final = 0.5
+_BLOCK: Final = 1 << 14
+"""So many frequencies at a time: all modes there take 70 MB."""
+
+Complexes32 = NDArray[np.complex64]
 
 
 @dataclass(frozen=True, eq=False)
-class _OtfTable:
-    """An OTF on a square grid of frequencies, looked up between its points.
+class EndEffect:
+    """The images of all modes of a group of bars minus those of endless ones, for unit contrast.
 
     Attributes
     ----------
-    table : (2 n + 1, 2 n + 1) array
-        Optical transfer function (OTF) at rows v, columns u, in steps of 0.02 c/px about zero.
+    half_px : float
+        Half the length of the bars.
+    across : (s,) array
+        Regular places along the normal, px.
+    along : (t,) array
+        Regular places along the bars, in units of `_stretched`.
+    table : (s t, m) array
     """
 
-    table: Complexes
-
-    def __call__(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
-        """OTF at frequencies across and along, same shape."""
-        places = [v_cpp / _TABLE_CPP + _TABLE_SIZE, u_cpp / _TABLE_CPP + _TABLE_SIZE]
-        parts = [
-            map_coordinates(part, places, order=3) for part in (self.table.real, self.table.imag)
-        ]
-        return np.asarray(parts[0] + 1j * parts[1])
-
-
-@dataclass(frozen=True, eq=False)
-class TableModes:
-    """All modes about a mean, at the frequencies of a table.
-
-    A fit changes their coefficients from pass to pass; to work them out takes longer than the rest
-    of a pass.
-
-    Attributes
-    ----------
-    modes : ((n + 1) (2 n + 1), m) array
-        At the frequencies v from zero upwards, all u of each: the rest is their conjugate.
-    """
-
-    modes: Complexes
+    half_px: float
+    across: Floats
+    along: Floats
+    table: Floats
 
     @classmethod
-    def of(cls, mean: MeanOtf, states: ProcessModes) -> TableModes:
-        """The modes of a mean and its states."""
-        n = _TABLE_SIZE
-        freq: Floats = np.asarray(_TABLE_CPP * np.arange(-n, n + 1))
-        u, v = np.tile(freq, n + 1), np.repeat(freq[n:], freq.size)
-        return cls(all_modes(mean, mode_count(states), u, v))
+    def nothing(cls, bars: Bars, reach_px: float, modes: int) -> EndEffect:
+        """An empty table for pixels up to `reach_px` to the sides of the bars."""
+        half = 0.5 * bars.length_px
+        count = math.ceil((0.5 * bars.width_px + reach_px) / _ACROSS_PX) + 1
+        last = math.ceil(float(_stretched(np.array([half]), half)[0])) + 1
+        across = np.asarray(_ACROSS_PX * np.arange(-count, count + 1))
+        along = np.arange(-last, last + 1.0)
+        return cls(half, across, along, np.zeros((across.size * along.size, modes)))
 
-    def table(self, otf: FittedOtf) -> _OtfTable:
-        """A fitted sum of them, tabulated."""
-        lower = otf.of_modes(self.modes).reshape(_TABLE_SIZE + 1, -1)
-        return _OtfTable(np.vstack([np.conj(lower[:0:-1, ::-1]), lower]))
+    def add(self, bars: Bars, freq: _Frequencies, block: _Block) -> None:
+        """Add the light of some frequencies to the table."""
+        g, t = freq.along_cpp, _unstretched(self.along, self.half_px)
+        window = freq.fade * freq.along_step * bars.length_px * np.sinc(bars.length_px * g)
+        ends = np.exp(2j * math.pi * np.outer(t, g)) * window
+        lines, size = block.modes.shape[1:]
+        image = ends.astype(np.complex64) @ block.modes.reshape(g.size, -1)
+        image = image.reshape(t.size, lines, size)
+        image -= ends.sum(axis=1).astype(np.complex64)[:, None, None] * block.without_ends
+        wave = np.exp(2j * math.pi * np.outer(self.across, block.across_cpp))
+        wave *= 2 * freq.across_step * bars.spectrum(block.across_cpp)
+        image = image.transpose(1, 0, 2).reshape(lines, -1)
+        real = wave.real.astype(np.float32) @ np.ascontiguousarray(image.real)
+        real -= wave.imag.astype(np.float32) @ np.ascontiguousarray(image.imag)
+        self.table[...] += real.reshape(self.table.shape)
 
-
-def scattered_light(
-    modes: TableModes, otf: FittedOtf, pixels: Sequence[GroupPixels]
-) -> list[Floats]:
-    """Effect of the bars' ends and light of other groups at every group's pixels, contrast 1."""
-    table = modes.table(otf)
-    others = _light_of_neighbours(
-        table, [one.bars for one in pixels], [(one.rows, one.cols) for one in pixels]
-    )
-    return [
-        _end_effect(table, one.bars, one.across, one.along) + other
-        for one, other in zip(pixels, others, strict=True)
-    ]
-
-
-def _end_effect(otf: _OtfTable, bars: Bars, across_px: Floats, along_px: Floats) -> Floats:
-    """Image of bars of their length minus that of endless ones, for unit contrast, (n,).
-
-    ``sum over g of L sinc(L g) exp(2 pi i g t) [H(f, g) - H(f, 0)]``, through the profile's
-    spectrum at every f: small and smooth well inside the bars, and zero for a system that does
-    not scatter that far. Frequencies along the bars fade out from 0.6 to 1.2 c/px.
-    """
-    reach_s, reach_t = float(np.max(np.abs(across_px))) + 2, float(np.max(np.abs(along_px))) + 2
-    step_f = 1 / (2 * reach_s + bars.width_px + 30)
-    step_g = 1 / (2 * reach_t + bars.length_px + 30)
-    f: Floats = np.asarray(step_f * (np.arange(math.ceil(_ACROSS_CPP / step_f)) + 0.5))
-    half = step_g * np.arange(1, math.ceil(_ALONG_CPP / step_g))
-    g = np.concatenate([-half[::-1], half])
-    x, y = unit_vector(bars.normal_deg)
-    across, along = f[:, None], np.append(g, 0.0)[None, :]
-    transfer = otf(across * x - along * y, across * y + along * x)
-    fade = np.clip((np.abs(g) / _ALONG_CPP - 0.5) / 0.5, 0.0, 1.0)
-    window = np.cos(0.5 * math.pi * fade) ** 2 * bars.length_px * np.sinc(bars.length_px * g)
-    change = (transfer[:, :-1] - transfer[:, -1:]) * (window * step_g)
-    change *= (2 * step_f * bars.spectrum(f))[:, None]
-    s = _GRID_PX * np.arange(-math.ceil(reach_s / _GRID_PX), math.ceil(reach_s / _GRID_PX) + 1)
-    t = _GRID_PX * np.arange(-math.ceil(reach_t / _GRID_PX), math.ceil(reach_t / _GRID_PX) + 1)
-    image = np.exp(2j * math.pi * np.outer(s, f)) @ change @ np.exp(2j * math.pi * np.outer(g, t))
-    places = np.stack([(across_px - s[0]) / _GRID_PX, (along_px - t[0]) / _GRID_PX])
-    return np.asarray(map_coordinates(image.real, places, order=3, mode="nearest"))
+    def columns(self, across_px: Floats, along_px: Floats) -> Floats:
+        """The effect in the images of all modes at pixels (n,), (n, m)."""
+        rows = CubicLookup.of(across_px, self.across)
+        cols = CubicLookup.of(_stretched(along_px, self.half_px), self.along)
+        four = np.arange(4)[:, None]
+        places = (rows.first + four)[:, None] * self.along.size + (cols.first + four)[None]
+        weights = rows.weights[:, None] * cols.weights[None]
+        n = across_px.size
+        starts = np.arange(0, 16 * n + 1, 16)
+        lookup = csr_array(
+            (weights.reshape(16, n).T.ravel(), places.reshape(16, n).T.ravel(), starts),
+            shape=(n, self.table.shape[0]),
+        )
+        return np.asarray(lookup @ self.table)
 
 
-def _light_of_neighbours(
-    otf: _OtfTable,
-    groups: Sequence[Bars],
-    places: Sequence[tuple[NDArray[np.intp], NDArray[np.intp]]],
-) -> list[Floats]:
-    """Light of all other groups at the pixels of every group, for unit contrast.
+@dataclass(frozen=True, eq=False)
+class _Frequencies:
+    """Those across the bars, and those along them with both signs and without zero."""
 
-    Groups are some pixels apart, so that coarse structure is all that matters: frequencies fade
-    out from 0.25 to 0.5 c/px, and one Fourier transform a group is exact.
+    across_step: float
+    along_step: float
+    along_cpp: Floats
+
+    @classmethod
+    def of(cls, groups: Sequence[Bars], reach_px: float) -> _Frequencies:
+        """Fine enough for the widest and the longest of some groups."""
+        width = max(one.width_px for one in groups)
+        length = max(one.length_px for one in groups)
+        step = 1 / (2 * length + _PADDING_PX)
+        half = step * np.arange(1, math.ceil(_ALONG_CPP / step))
+        return cls(
+            1 / (2 * (width + reach_px) + _PADDING_PX), step, np.concatenate([-half[::-1], half])
+        )
+
+    @property
+    def fade(self) -> Floats:
+        """Weights of the frequencies along the bars."""
+        past_half = np.clip((np.abs(self.along_cpp) / _ALONG_CPP - 0.5) / 0.5, 0.0, 1.0)
+        return np.asarray(np.cos(0.5 * math.pi * past_half) ** 2)
+
+    def blocks(self, mean: MeanOtf, states: ProcessModes, normal_deg: float) -> Iterator[_Block]:
+        """All modes at all frequencies of bars with some normal, some frequencies at a time."""
+        across = self.across_step * (np.arange(math.ceil(_ACROSS_CPP / self.across_step)) + 0.5)
+        x, y = unit_vector(normal_deg)
+        g = np.append(self.along_cpp, 0.0)[:, None]
+        count = max(_BLOCK // g.size, 1)
+        for first in range(0, across.size, count):
+            f = np.asarray(across[first : first + count])
+            u, v = f * x - g * y, f * y + g * x
+            modes = all_modes(mean, mode_count(states), u.ravel(), v.ravel()).astype(np.complex64)
+            modes = modes.reshape(g.size, f.size, -1)
+            yield _Block(f, modes[:-1], modes[-1])
+
+
+@dataclass(frozen=True, eq=False)
+class _Block:
+    """All modes at frequencies along and across, (g, f, m), and without the former, (f, m)."""
+
+    across_cpp: Floats
+    modes: Complexes32
+    without_ends: Complexes32
+
+
+def end_effects(
+    mean: MeanOtf, states: ProcessModes, groups: Sequence[Bars], reach_px: float
+) -> list[EndEffect]:
+    """The effect of the ends of every group on its pixels.
+
+    For a mode ``H``
+
+        ``sum over f, g of P(f) L sinc(L g) exp(2 pi i (f s + g t)) [H(f, g) - H(f, 0)]``
+
+    with the spectrum P of the bars' profile and their length L: small and smooth well inside the
+    bars, and zero for a mode that does not scatter that far.
 
     Parameters
     ----------
-    otf : OtfTable
+    mean : MeanOtf
+    states : ProcessModes
     groups : sequence of Bars
-    places : sequence of (rows, cols)
-        The pixels of every group.
+    reach_px : float
+        How far to the sides of the bars the pixels of a group go.
     """
-    first = [min(int(one[axis].min()) for one in places) for axis in (0, 1)]
-    last = [max(int(one[axis].max()) for one in places) for axis in (0, 1)]
-    shape = [last[axis] - first[axis] + 1 + _PADDING_PX for axis in (0, 1)]
-    v, u = (
-        grid.ravel()
-        for grid in np.meshgrid(np.fft.fftfreq(shape[0]), np.fft.rfftfreq(shape[1]), indexing="ij")
+    freq = _Frequencies.of(groups, reach_px)
+    found = [EndEffect.nothing(one, reach_px, mode_count(states)) for one in groups]
+    normals = np.array([one.normal_deg for one in groups])
+    kind = np.round(normals / _ONE_DIRECTION_DEG)
+    for own in np.unique(kind):
+        members = np.flatnonzero(kind == own).tolist()
+        for block in freq.blocks(mean, states, float(normals[members].mean())):
+            for number in members:
+                found[number].add(groups[number], freq, block)
+    return found
+
+
+def _stretched(along_px: Floats, half_px: float) -> Floats:
+    """Places along the bars, from their middle, in steps that are wide far from both ends."""
+    return np.asarray(
+        np.sign(along_px) * (_depth(np.array(half_px)) - _depth(half_px - np.abs(along_px)))
     )
-    fade = np.clip(np.hypot(u, v) / _COARSE_CPP - 1.0, 0.0, 1.0)
-    transfer = otf(u, v) * np.cos(0.5 * math.pi * fade) ** 2
-    total, own = np.zeros(shape), []
-    for bars, (rows, cols) in zip(groups, places, strict=True):
-        x, y = unit_vector(bars.normal_deg)
-        f, g = u * x + v * y, v * x - u * y
-        outline = bars.spectrum(f) * bars.length_px * np.sinc(bars.length_px * g)
-        place = np.exp(-2j * math.pi * (u * (bars.col - first[1]) + v * (bars.row - first[0])))
-        spectrum = (transfer * outline * place).reshape(shape[0], -1)
-        image = np.fft.irfft2(spectrum, shape)
-        total += image
-        own.append(image[rows - first[0], cols - first[1]])
-    return [
-        np.asarray(total[rows - first[0], cols - first[1]] - alone)
-        for alone, (rows, cols) in zip(own, places, strict=True)
-    ]
+
+
+def _unstretched(places: Floats, half_px: float) -> Floats:
+    """The distance from the middle of the bars, px, of such places."""
+    depth = _depth(np.array(half_px)) - np.abs(places)
+    far = _NEAR_PX * np.exp(np.maximum(depth, _NEAR_PX) / _NEAR_PX - 1)
+    return np.asarray(np.sign(places) * (half_px - np.where(depth < _NEAR_PX, depth, far)))
+
+
+def _depth(distance_px: Floats) -> Floats:
+    """Distance from an end, a sixth of whose logarithm it is beyond 6 px."""
+    far = _NEAR_PX * (1 + np.log(np.maximum(distance_px, _NEAR_PX) / _NEAR_PX))
+    return np.asarray(np.where(distance_px < _NEAR_PX, distance_px, far))

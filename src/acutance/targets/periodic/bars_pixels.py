@@ -17,9 +17,10 @@ from acutance.numerics.lookup import CubicLookup
 from acutance.numerics.otf_modes import HIGHEST_CPP, MeanOtf, ProcessModes
 from acutance.targets.periodic.otf_model import all_modes, mode_count
 
-__all__ = ["GroupPixels", "group_columns", "pixels_about"]
+__all__ = ["SIDE_PX", "GroupPixels", "group_columns", "pixels_about"]
 
-_SIDE_PX: Final = 8.0
+SIDE_PX: Final = 8.0
+"""How far to the sides of the bars the pixels of a group go."""
 _END_MARGIN_PX: Final = 5.0
 _STEP_PX: Final = 0.05
 _MAX_COLUMNS: Final = 1 << 31
@@ -54,7 +55,7 @@ class GroupPixels:
         across, along = bars.across_and_along(rows.astype(float), cols.astype(float))
         margin = min(_END_MARGIN_PX, 0.25 * bars.length_px)
         kept = np.abs(along) < 0.5 * bars.length_px - margin
-        kept &= np.abs(across) < 0.5 * bars.width_px + _SIDE_PX
+        kept &= np.abs(across) < 0.5 * bars.width_px + SIDE_PX
         if np.count_nonzero(kept & (np.abs(across) < 0.5 * bars.width_px)) < 40:
             raise NoBarsError(
                 f"group {number} of {bars.count} bars with a period of {bars.period_px:.2f} px at "
@@ -93,7 +94,7 @@ def pixels_about(image: Floats, bars: Bars) -> tuple[NDArray[np.intp], NDArray[n
 
     A group is a small part of a large image.
     """
-    reach = math.ceil(math.hypot(0.5 * bars.length_px, 0.5 * bars.width_px + _SIDE_PX)) + 1
+    reach = math.ceil(math.hypot(0.5 * bars.length_px, 0.5 * bars.width_px + SIDE_PX)) + 1
     top, left = (max(math.floor(place) - reach, 0) for place in (bars.row, bars.col))
     bottom, right = (max(math.ceil(place) + reach + 1, 0) for place in (bars.row, bars.col))
     rows, cols = np.nonzero(np.isfinite(image[top:bottom, left:right]))

@@ -21,14 +21,14 @@ import numpy as np
 from acutance.curves import Estimate
 from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
-from acutance.errors import NoBarsError
 from acutance.geometry.bar_group import Bars
 from acutance.numerics.combined_prior import CombinedPrior
 from acutance.numerics.marginal_likelihood import Posterior
 from acutance.numerics.noise import Correlation, correlation, rounding_std
 from acutance.numerics.otf_modes import MeanOtf, ProcessModes
-from acutance.targets.periodic.bars_ends import TableModes, scattered_light
-from acutance.targets.periodic.bars_pixels import GroupPixels, group_columns
+from acutance.targets.periodic.bars_ends import EndEffect, end_effects
+from acutance.targets.periodic.bars_neighbours import CoarseModes, light_of_neighbours
+from acutance.targets.periodic.bars_pixels import SIDE_PX, GroupPixels, group_columns
 from acutance.targets.periodic.curvature import find_curvature
 from acutance.targets.periodic.oblique_blur import aligned_or_turned
 from acutance.targets.periodic.otf_model import FittedOtf, level_row, mode_count
@@ -44,9 +44,9 @@ from acutance.targets.periodic.stated_contrast import Levels, StatedContrast, wi
 from acutance.targets.periodic.tuned import (
     APERTURE_STD,
     BARS_NOISE_FLOOR,
+    NEIGHBOURS_STD,
     PLACE_STD_PERIODS,
     ROUNDNESS_STD,
-    SCATTERED_STD,
 )
 from acutance.targets.periodic.uneven_contrast import uneven_groups
 
@@ -57,7 +57,7 @@ _MAX_PLACE_PASSES: Final = 7
 _MAX_PASSES: Final = 14
 _PLACED_PX: Final = 0.05
 _SETTLED_PX: Final = 0.005
-_SETTLED_SCATTERED: Final = 2e-4
+_SETTLED_LIGHT: Final = 2e-4
 _SETTLED_WEIGHT: Final = 0.05
 _FIXED: Final = 1e-6
 """Prior standard deviation of coefficients that are not fitted."""
@@ -136,14 +136,12 @@ def solve_bars(
     Raises
     ------
     NoBarsError
-        If a group has too few pixels, or does not settle near its stated place.
+        If a group has too few pixels.
     """
     if levels is not None:
         contrast = math.copysign(levels.bright - levels.dark, contrast)
     mean, placed, contrast = _place_groups(image, groups, contrast)
-    solved = _fit_otf(image, groups, placed, mean, contrast, levels, robust=robust)
-    _require_near(groups, tuple(one.bars for one in solved.groups))
-    return solved
+    return _fit_otf(image, groups, placed, mean, contrast, levels, robust=robust)
 
 
 def _place_groups(
@@ -185,47 +183,49 @@ def _fit_otf(
     likelihood, and the weights and the correlation of the noise from what it leaves.
     """
     states = ProcessModes(mean.width_px)
-    table_modes = TableModes.of(mean, states)
+    coarse = CoarseModes.of(mean, states)
+    bars_ends = end_effects(mean, states, groups, SIDE_PX)
     before = _pixels_of(image, groups)
     rounding = rounding_std(image[np.isfinite(image)])
     weights = [np.ones(one.value.size) for one in before]
-    all_scattered = [np.zeros(one.value.size) for one in before]
+    all_light = [np.zeros(one.value.size) for one in before]
     noise_found = Correlation(1.0, 0.0, 0.0)
     earlier: Posterior | None = None
     for _ in range(_MAX_PASSES):
         pixels = _pixels_of(image, groups)
         ends = np.cumsum([one.value.size for one in pixels])[:-1]
         weight = np.concatenate(_taken_over(pixels, before, weights, 1.0))
-        scattered = _taken_over(pixels, before, all_scattered, 0.0)
+        light = _taken_over(pixels, before, all_light, 0.0)
         fitted = _regression(
-            pixels, stated, mean, states, contrast, weight, scattered,
-            levels, noise_found.inflation, earlier,
+            pixels, stated, mean, states, contrast, weight, light,
+            bars_ends, levels, noise_found.inflation, earlier,
         )  # fmt: skip
         standard = fitted.residual / fitted.noise
         again = reweighted(standard, rounding / fitted.noise) if robust else weight
         noise_found = _correlation(standard, pixels)
-        found = scattered_light(table_modes, fitted.otf, pixels)
-        change = max(float(np.max(np.abs(a - b))) for a, b in zip(found, scattered, strict=True))
+        found = light_of_neighbours(coarse, fitted.otf, pixels)
+        change = max(float(np.max(np.abs(a - b))) for a, b in zip(found, light, strict=True))
         if (
             _longest_update(fitted, pixels) < _SETTLED_PX
-            and change < _SETTLED_SCATTERED
+            and change < _SETTLED_LIGHT
             and float(np.max(np.abs(again - weight))) < _SETTLED_WEIGHT
         ):
             break
         groups = tuple(one.moved(_own(fitted, k)[0][2:]) for k, one in enumerate(pixels))
-        before, weights, all_scattered = pixels, np.split(again, ends), found
+        before, weights, all_light = pixels, np.split(again, ends), found
         earlier = fitted.posterior
         contrast = _same_sign(fitted.otf.level, contrast)
     seen = None
     if levels is not None:
         free = _regression(
-            pixels, stated, mean, states, contrast, weight, scattered, None, noise_found.inflation
-        ).otf
+            pixels, stated, mean, states, contrast, weight, light, bars_ends,
+            inflation=noise_found.inflation,
+        ).otf  # fmt: skip
         seen = StatedContrast(levels, Estimate(abs(free.level), free.level_std))
     own = [_own(fitted, number) for number in range(len(pixels))]
     first = _OWN * len(pixels)
     modes = slice(first, None)
-    bars = contrast * np.concatenate(scattered)
+    bars = contrast * np.concatenate(light)
     bars += fitted.design[:, modes] @ fitted.posterior.beta[modes]
     return BarsSolution(
         otf=aligned_or_turned(fitted.otf, float(fitted.posterior.prior_std[first + 3])),
@@ -275,14 +275,15 @@ def _regression(
     states: ProcessModes | None,
     contrast: float,
     weight: Floats,
-    scattered: list[Floats],
+    light: list[Floats],
+    bars_ends: Sequence[EndEffect] = (),
     levels: Levels | None = None,
     inflation: float = 1.0,
     earlier: Posterior | None = None,
 ) -> Regression:
     """All groups where they are taken to be, in one linear model; without `states` the mean's."""
-    around = contrast * np.concatenate(scattered)
-    design = _design(pixels, mean, states, contrast, around)
+    around = contrast * np.concatenate(light)
+    design = _design(pixels, mean, states, contrast, around, bars_ends)
     value = np.concatenate([one.value for one in pixels]) - around
     first = _OWN * len(pixels) + 1
     normal = weighted_normal(design, value, weight)
@@ -305,6 +306,7 @@ def _design(
     states: ProcessModes | None,
     contrast: float,
     around: Floats,
+    bars_ends: Sequence[EndEffect],
 ) -> Floats:
     """Columns of all pixels, (n, m): every group's own, the light around them, the modes."""
     first = _OWN * len(pixels) + 1
@@ -315,6 +317,8 @@ def _design(
         here = slice(start, start + one.value.size)
         own = slice(_OWN * number, _OWN * (number + 1))
         design[here, first:], design[here, own] = group_columns(one, mean, states, contrast)
+        if states is not None:
+            design[here, first:] += bars_ends[number].columns(one.across, one.along)
         start += one.value.size
     return design
 
@@ -348,7 +352,7 @@ def _prior(
     mean_scale = np.repeat(
         [FREE_STD, ROUNDNESS_STD * (mean.xx + 1 / 12), _FIXED, aperture], [1, 3, 2, 2]
     )
-    own_scale = np.append(np.concatenate(scales), SCATTERED_STD / height)
+    own_scale = np.append(np.concatenate(scales), NEIGHBOURS_STD / height)
     return otf_prior(
         own_scale, np.concatenate(means), mean_scale, states, height, BARS_NOISE_FLOOR,
         level_stated=level_stated,
@@ -378,16 +382,3 @@ def _correlation(standard: Floats, pixels: tuple[GroupPixels, ...]) -> Correlati
     rows = np.concatenate([one.rows for one in pixels])
     cols = np.concatenate([one.cols for one in pixels])
     return correlation(np.clip(standard, -4, 4), rows, cols)
-
-
-def _require_near(stated: tuple[Bars, ...], found: tuple[Bars, ...]) -> None:
-    """Refuse groups that settled elsewhere than where they were stated to be."""
-    for number, (one, other) in enumerate(zip(stated, found, strict=True), 1):
-        across, _ = one.across_and_along(np.array([other.row]), np.array([other.col]))
-        moved, scale = float(across[0]), other.period_px / one.period_px
-        if abs(moved) > 0.75 * one.period_px or abs(scale - 1) > 0.6 / one.count:
-            raise NoBarsError(
-                f"group {number} was stated with a period of {one.period_px:.2f} px at row "
-                f"{one.row:.1f}, column {one.col:.1f}; the pixels fit {other.period_px:.2f} px, "
-                f"{moved:+.1f} px away: check its place, its number of bars and its period"
-            )
