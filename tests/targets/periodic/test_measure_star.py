@@ -41,6 +41,20 @@ def test_whole_curves_with_stated_levels(name):
     assert found.trusted
 
 
+@pytest.mark.parametrize("wave", ["sine", "square"])
+def test_without_noise_what_the_modes_leave_is_no_signal(wave):
+    """An aperture is none of them: taken for signal, its rest made an RER of half the true one."""
+    sensor = reference_systems()["diffraction"]
+    image, _ = ac.simulate.star(sensor, wave=wave)
+    options = StarOptions(wave=wave, dark=200.0, bright=1200.0, level_std=1.0)
+    found, true = measure_star(image, cycles=36, options=options), sensor.response_along(0.0)
+    assert found.trusted
+    for name, most in {"rer": 0.01, "fwhm_px": 0.02, "mtf_nyquist": 0.001}.items():
+        seen = getattr(found.across, name)
+        error = seen.value - float(getattr(true, name))
+        assert abs(error) < min(2.5 * seen.std, most), name
+
+
 def test_a_shape_that_no_mode_follows_is_seen_in_the_residuals():
     found, truth = measured_star("echo")
     error, std = _errors(found, truth)

@@ -43,8 +43,8 @@ from acutance.targets.periodic.otf_regression import (
 from acutance.targets.periodic.stated_contrast import Levels, StatedContrast, with_level
 from acutance.targets.periodic.tuned import (
     APERTURE_STD,
-    BARS_NOISE_FLOOR,
     NEIGHBOURS_STD,
+    NOISE_FLOOR,
     PLACE_STD_PERIODS,
     ROUNDNESS_STD,
 )
@@ -354,7 +354,7 @@ def _prior(
     )
     own_scale = np.append(np.concatenate(scales), NEIGHBOURS_STD / height)
     return otf_prior(
-        own_scale, np.concatenate(means), mean_scale, states, height, BARS_NOISE_FLOOR,
+        own_scale, np.concatenate(means), mean_scale, states, height, NOISE_FLOOR,
         level_stated=level_stated,
     )  # fmt: skip
 

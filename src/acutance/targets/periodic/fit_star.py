@@ -48,7 +48,7 @@ from acutance.targets.periodic.star_waves import (
 from acutance.targets.periodic.stated_contrast import Levels, StatedContrast, with_level
 from acutance.targets.periodic.tuned import (
     APERTURE_STD,
-    STAR_NOISE_FLOOR,
+    NOISE_FLOOR,
     STAR_SHAPE_SHARE,
 )
 from acutance.targets.periodic.uneven_contrast import uneven_sides
@@ -355,7 +355,7 @@ def _prior(mean: MeanOtf, level: float, *, level_stated: bool) -> CombinedPrior:
     own_scale = np.append(np.full(_BACKGROUND, _BACKGROUND_STD), _PHASE_STD_RAD / level)
     return otf_prior(
         own_scale, np.zeros(_FIRST), np.repeat([FREE_STD, APERTURE_STD], [6, 2]),
-        ProcessModes(mean.width_px), level, STAR_NOISE_FLOOR, level_stated=level_stated,
+        ProcessModes(mean.width_px), level, NOISE_FLOOR, level_stated=level_stated,
     )  # fmt: skip
 
 
