@@ -220,6 +220,15 @@ def test_a_cut_off_group_is_none():
     assert len(groups) < 3
 
 
+def test_bars_on_a_level_of_a_million_contrasts_are_those_on_none():
+    image, _ = bars_scene()
+    low = (image - 200) / 1000
+    plain, high = measure_bars(low), measure_bars(low + 1e6)
+    assert high.across.mtf_nyquist.value == pytest.approx(plain.across.mtf_nyquist.value, abs=1e-5)
+    assert high.across.mtf_nyquist.std == pytest.approx(plain.across.mtf_nyquist.std, rel=1e-2)
+    assert high.verdict.word == plain.verdict.word
+
+
 def test_stated_groups_that_are_elsewhere():
     image, truth = bars_scene()
     groups = stated_groups(truth)

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -140,8 +140,16 @@ def solve_bars(
     """
     if levels is not None:
         contrast = math.copysign(levels.bright - levels.dark, contrast)
-    mean, placed, contrast = _place_groups(image, groups, contrast)
-    return _fit_otf(image, groups, placed, mean, contrast, levels, robust=robust)
+    # The prior of a background is one of contrasts, and their squares are to be told from noise.
+    base = float(np.nanmedian(image))
+    above = image - base
+    mean, placed, contrast = _place_groups(above, groups, contrast)
+    solved = _fit_otf(above, groups, placed, mean, contrast, levels, robust=robust)
+    return replace(
+        solved,
+        groups=tuple(replace(one, value=image[one.rows, one.cols]) for one in solved.groups),
+        backgrounds=tuple(base + one for one in solved.backgrounds),
+    )
 
 
 def _place_groups(
