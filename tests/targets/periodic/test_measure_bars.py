@@ -189,6 +189,30 @@ def test_a_wrong_number_of_bars_is_refused(count, wrong):
     assert [one.bars.count for one in right.groups] == [count] * 4
 
 
+@pytest.mark.parametrize(
+    ("count", "periods", "angle_deg", "sign"),
+    [
+        (5, (20, 10, 5), 0.0, 1),
+        (3, (42.5, 22.4, 11.8), -28.0, -1),
+        (2, (33, 17, 9), 12.0, 1),
+        (4, (29.3, 15.4, 8.1, 4.3), 38.0, -1),
+    ],
+)
+def test_bars_wider_than_the_gaps_that_are_closed(count, periods, angle_deg, sign):
+    """Each stands alone, and those in a row are a group."""
+    image, truth = bars_scene(
+        "diffraction", 1, count=count, periods_px=periods, angle_deg=angle_deg,
+        length_px=3.0 * periods[0],
+    )  # fmt: skip
+    found, contrast = find_bars(sign * image)
+    assert [one.count for one in found] == [count] * len(periods)
+    assert [one.period_px for one in found] == pytest.approx(periods, rel=0.03)
+    for one, true in zip(found, truth.groups, strict=True):
+        assert abs(one.row - true.row) + abs(one.col - true.col) < 1.0
+        assert one.length_px == pytest.approx(true.length_px, abs=1.5)
+    assert np.sign(contrast) == sign
+
+
 @pytest.mark.parametrize("count", [2, 3, 7])
 @pytest.mark.parametrize("periods", [(12, 6, 2.5), (4, 3, 2.2)])
 def test_groups_are_found_and_counted(count, periods):

@@ -20,6 +20,7 @@ from acutance.curves.grid import Floats
 from acutance.errors import NoBarsError
 from acutance.geometry.bar_group import Bars
 from acutance.numerics.compiled import compiled
+from acutance.targets.periodic.bars_rows import in_rows
 from acutance.targets.periodic.tuned import (
     ABOUT_AS_WELL,
     FULL_HEIGHT,
@@ -106,6 +107,14 @@ def _candidates(bright: Floats, count: int | None) -> tuple[list[_Candidate], in
         groups = [one for one in measured if one is not None and one.bars.count > 1]
         # Bars that are wider than the gaps closed stand alone, as a patch of the bars' level does.
         alone = len(measured) - len(groups)
+        single = [one.bars for one in measured if one is not None and one.bars.count == 1]
+        for members, row in in_rows(single):
+            joined = _measured(_around(bright, row), count)
+            if joined is not None and joined.bars.count > 1:
+                # A wide bar whose blurred sides are low may have been taken for fine ones.
+                apart = [one for one in groups if not _lies_in(one.bars, joined.bars)]
+                groups = [*apart, joined]
+                alone -= len(members)
         if groups and alone < min_alone:
             best, min_alone = groups, alone
         if best and not min_alone:
@@ -162,6 +171,25 @@ def _blobs(bright: Floats, close_px: float) -> list[_Blob]:
             window = slice(top, down.stop + _MARGIN_PX), slice(left, right.stop + _MARGIN_PX)
             found.append(_Blob(top, left, bright[window], labels[window] == one))
     return found
+
+
+def _lies_in(one: Bars, other: Bars) -> bool:
+    """Whether the middle of a group lies within another one."""
+    across, along = other.across_and_along(np.array([one.row]), np.array([one.col]))
+    inside = abs(across[0]) < 0.5 * other.width_px and abs(along[0]) < 0.5 * other.length_px
+    return bool(inside)
+
+
+def _around(bright: Floats, bars: Bars) -> _Blob:
+    """The part of the image that a group of wide bars takes, its gaps included."""
+    corners = bars.region
+    top, left = (max(math.floor(low) - _MARGIN_PX, 0) for low in corners.min(axis=0))
+    bottom, right = (math.ceil(high) + _MARGIN_PX + 1 for high in corners.max(axis=0))
+    window = bright[top:bottom, left:right]
+    rows, cols = np.indices(window.shape).reshape(2, -1).astype(float)
+    across, along = bars.across_and_along(rows + top, cols + left)
+    inside = (np.abs(across) < 0.5 * bars.width_px) & (np.abs(along) < 0.5 * bars.length_px)
+    return _Blob(top, left, window, inside.reshape(window.shape))
 
 
 @dataclass(frozen=True)
