@@ -210,7 +210,8 @@ def bars_table(case: BarsCase, draws: int, seed: int, processes: int) -> str:
     ]:
         errors, stds = (np.concatenate([one[i] for one in own]) for i in (0, 1))
         plain = np.concatenate([one[2] for one in own])
-        rms = np.sqrt(np.mean(plain**2, axis=0))
+        # Bars along the grid have no plain readings.
+        rms = np.sqrt(np.nanmean(plain**2, axis=0))
         rows.append([*row_of(name, errors, stds), *(f"{one:.4f}" for one in rms)])
     head = (*HEAD, "sinusoids", "Coltman")
     return f"## Bars: {case.name}\n\n{table(head, rows)}"
