@@ -151,6 +151,13 @@ def test_a_copy_is_measured_once_and_told(acutance, given, tmp_path, edge_image)
     assert f"measured once: {copy} and {edge_image} have the same content" in done.stdout
 
 
+def test_all_bands_are_asked_for_by_that_word(acutance, given):
+    done = acutance(*given, "--band", "all")
+    assert done.exit_code == 0, done.output
+    assert "1 image: 1 row added" in done.stdout
+    assert "no image has band" not in done.stdout
+
+
 def test_unreadable_images_are_named(acutance, given, tmp_path):
     bad = tmp_path / "bad.tif"
     bad.write_bytes(b"II*\x00")

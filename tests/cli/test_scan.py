@@ -156,7 +156,7 @@ def test_a_page_is_of_the_scene(acutance, scene, tmp_path, shown, few_forms):
         (("--roi", "0,0,60,60"), "at least 8 are needed", 4),
         (("--edges", "edges.txt"), "--edges", 2),
         (("--roi", "0,0,1,1"), "1 x 1 pixels were to be scanned", 2),
-        (("--min-length", "1"), "--min-length is 1: give", 2),
+        (("--min-length", "1"), "--min-length is 1: give 8 to 42", 2),
         (("--min-length", "60"), "(--min-length) is 60, and longer edges are cut", 2),
         (("--min-length", "60"), "give at most 42", 2),
         (("--workers", "0"), "workers", 2),

@@ -50,7 +50,9 @@ def batch(
     ] = None,
     band: Annotated[
         str | None,
-        typer.Option(metavar="BAND,...", help="Names or numbers of the bands; all without it."),
+        typer.Option(
+            metavar="BAND,...", help="Names or numbers of the bands; all (as without it)."
+        ),
     ] = None,
     sensor: Annotated[
         str | None,
@@ -134,10 +136,11 @@ def _plan(
         raise OptionError(f"{given_plan} is a plan and names its images: give it alone")
     if not is_plan and (targets is None or archive is None):
         raise OptionError("images need --targets FILE and --archive PLACE, or give a plan.toml")
+    every_band = band is not None and band.strip().lower() == "all"
     given: dict[str, Any] = {
         "targets": targets,
         "archive": archive,
-        "bands": None if band is None else _bands(band),
+        "bands": None if band is None or every_band else _bands(band),
         "workers": workers,
         "dask": dask,
     }
@@ -145,6 +148,8 @@ def _plan(
         read_plan(images[0]) if is_plan else BatchPlan(images=tuple(images), targets="", archive="")
     )
     plan = replace(plan, **{name: one for name, one in given.items() if one is not None})
+    if every_band:
+        plan = replace(plan, bands=None)
     if workers is not None:
         plan = replace(plan, dask=None)
     if dask is not None:

@@ -75,7 +75,9 @@ class ScanOptions:
         for name, (low, high) in _RANGES.items():
             value = getattr(self, name)
             if not low <= value <= high:
-                raise OptionError(f"{name} is {value:g}: give {low:g} to {high:g}")
+                # Longer edges are cut into pieces.
+                most = self.max_length_px // 1.5 if name == "min_length_px" else high
+                raise OptionError(f"{name} is {value:g}: give {low:g} to {min(high, most):g}")
         if not all(1 <= count <= _MAX_PLACES for count in self.places):
             raise OptionError(
                 f"places (--field) is {self.places[0]} x {self.places[1]}: give 1 to "
