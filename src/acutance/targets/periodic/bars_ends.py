@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -70,8 +70,8 @@ class EndEffect:
         along = np.arange(-last, last + 1.0)
         return cls(half, across, along, np.zeros((across.size * along.size, modes)))
 
-    def add(self, bars: Bars, freq: _Frequencies, block: _Block) -> None:
-        """Add the light of some frequencies to the table."""
+    def light(self, bars: Bars, freq: _Frequencies, block: _Block) -> Floats:
+        """What some frequencies add to the table, (s t, m)."""
         g, t = freq.along_cpp, _unstretched(self.along, self.half_px)
         window = freq.fade * freq.along_step * bars.length_px * np.sinc(bars.length_px * g)
         ends = np.exp(2j * math.pi * np.outer(t, g)) * window
@@ -84,7 +84,7 @@ class EndEffect:
         image = image.transpose(1, 0, 2).reshape(lines, -1)
         real = wave.real.astype(np.float32) @ np.ascontiguousarray(image.real)
         real -= wave.imag.astype(np.float32) @ np.ascontiguousarray(image.imag)
-        self.table[...] += real.reshape(self.table.shape)
+        return np.asarray(real.reshape(self.table.shape), float)
 
     def columns(self, across_px: Floats, along_px: Floats) -> Floats:
         """The effect in the images of all modes at pixels (n,), (n, m)."""
@@ -178,7 +178,9 @@ def end_effects(
         members = np.flatnonzero(kind == own).tolist()
         for block in freq.blocks(mean, states, float(normals[members].mean())):
             for number in members:
-                found[number].add(groups[number], freq, block)
+                one = found[number]
+                light = one.light(groups[number], freq, block)
+                found[number] = replace(one, table=one.table + light)
     return found
 
 
