@@ -87,7 +87,8 @@ def test_values_beyond_a_table_are_refused(tmp_path):
 @pytest.mark.parametrize(
     ("asked", "words"),
     [
-        ("film", "film is none of the known curves"),
+        ("film", "film is none of the known curves .*, there is no such file"),
+        (".", ". is none of the known curves .*, it cannot be read as text"),
         ("2.2", r"is the number 2\.2 .linearize=2\.2, --gamma 2\.2"),
         ("sRGB:white", "'white' has to be a number above 0"),
         ("log:-1", "'-1' has to be a number"),

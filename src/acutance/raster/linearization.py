@@ -357,8 +357,10 @@ def _rows(path: str) -> Floats:
                 f"the curve {path!r} is a text: a power law is the number {path} "
                 f"(linearize={path}, --gamma {path})"
             ) from error
+        missing = isinstance(error, FileNotFoundError)
+        why = "there is no such file" if missing else "it cannot be read as text"
         raise OptionError(
-            f"{path} is none of the known curves (sRGB, log:DECADE) and cannot be read as a table: "
+            f"{path} is none of the known curves (sRGB, log:DECADE) and no table, {why}: "
             "give the path of a text file with two columns, stored value and light"
         ) from error
     lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
