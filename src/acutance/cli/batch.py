@@ -136,20 +136,14 @@ def _plan(
         raise OptionError(f"{given_plan} is a plan and names its images: give it alone")
     if not is_plan and (targets is None or archive is None):
         raise OptionError("images need --targets FILE and --archive PLACE, or give a plan.toml")
-    every_band = band is not None and band.strip().lower() == "all"
-    given: dict[str, Any] = {
-        "targets": targets,
-        "archive": archive,
-        "bands": None if band is None or every_band else _bands(band),
-        "workers": workers,
-        "dask": dask,
-    }
+    words = {"targets": targets, "archive": archive, "workers": workers, "dask": dask}
+    given: dict[str, Any] = {name: one for name, one in words.items() if one is not None}
+    if band is not None:
+        given["bands"] = None if band.strip().lower() == "all" else _bands(band)
     plan = (
         read_plan(images[0]) if is_plan else BatchPlan(images=tuple(images), targets="", archive="")
     )
-    plan = replace(plan, **{name: one for name, one in given.items() if one is not None})
-    if every_band:
-        plan = replace(plan, bands=None)
+    plan = replace(plan, **given)
     if workers is not None:
         plan = replace(plan, dask=None)
     if dask is not None:

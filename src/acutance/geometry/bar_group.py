@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from acutance.arguments import require_types
 from acutance.curves.direction import unit_vector
@@ -84,6 +85,12 @@ class Bars:
         cos, sin = unit_vector(self.normal_deg)
         x, y = cols - self.col, rows - self.row
         return x * cos + y * sin, -x * sin + y * cos
+
+    def holds(self, rows: Floats, cols: Floats) -> NDArray[np.bool_]:
+        """Which places lie within the outline of the group."""
+        across, along = self.across_and_along(rows, cols)
+        within = np.abs(across) < 0.5 * self.width_px
+        return np.asarray(within & (np.abs(along) < 0.5 * self.length_px))
 
     def spectrum(self, freq_cpp: Floats) -> Floats:
         """Fourier transform of the profile (1 on the bars, 0 next to them), which is real."""

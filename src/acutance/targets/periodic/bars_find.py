@@ -108,13 +108,12 @@ def _candidates(bright: Floats, count: int | None) -> tuple[list[_Candidate], in
         # Bars that are wider than the gaps closed stand alone, as a patch of the bars' level does.
         alone = len(measured) - len(groups)
         single = [one.bars for one in measured if one is not None and one.bars.count == 1]
-        for members, row in in_rows(single):
+        for row in in_rows(single):
             joined = _measured(_around(bright, row), count)
             if joined is not None and joined.bars.count > 1:
                 # A wide bar whose blurred sides are low may have been taken for fine ones.
-                apart = [one for one in groups if not _lies_in(one.bars, joined.bars)]
-                groups = [*apart, joined]
-                alone -= len(members)
+                groups = [one for one in groups if not _is_inside(one.bars, joined.bars)] + [joined]
+                alone -= row.count
         if groups and alone < min_alone:
             best, min_alone = groups, alone
         if best and not min_alone:
@@ -173,11 +172,9 @@ def _blobs(bright: Floats, close_px: float) -> list[_Blob]:
     return found
 
 
-def _lies_in(one: Bars, other: Bars) -> bool:
+def _is_inside(one: Bars, other: Bars) -> bool:
     """Whether the middle of a group lies within another one."""
-    across, along = other.across_and_along(np.array([one.row]), np.array([one.col]))
-    inside = abs(across[0]) < 0.5 * other.width_px and abs(along[0]) < 0.5 * other.length_px
-    return bool(inside)
+    return bool(other.holds(np.array(one.row), np.array(one.col)))
 
 
 def _around(bright: Floats, bars: Bars) -> _Blob:
@@ -187,8 +184,7 @@ def _around(bright: Floats, bars: Bars) -> _Blob:
     bottom, right = (math.ceil(high) + _MARGIN_PX + 1 for high in corners.max(axis=0))
     window = bright[top:bottom, left:right]
     rows, cols = np.indices(window.shape).reshape(2, -1).astype(float)
-    across, along = bars.across_and_along(rows + top, cols + left)
-    inside = (np.abs(across) < 0.5 * bars.width_px) & (np.abs(along) < 0.5 * bars.length_px)
+    inside = bars.holds(rows + top, cols + left)
     return _Blob(top, left, window, inside.reshape(window.shape))
 
 

@@ -73,15 +73,10 @@ def light_of_neighbours(
         A sum of them.
     pixels : sequence of GroupPixels
     """
-    first_row, first_col = (
-        min(int(where.min()) for where in axis)
-        for axis in ([one.rows for one in pixels], [one.cols for one in pixels])
-    )
-    last_row, last_col = (
-        max(int(where.max()) for where in axis)
-        for axis in ([one.rows for one in pixels], [one.cols for one in pixels])
-    )
-    shape = [last_row - first_row + 1 + _PADDING_PX, last_col - first_col + 1 + _PADDING_PX]
+    rows = np.concatenate([one.rows for one in pixels])
+    cols = np.concatenate([one.cols for one in pixels])
+    top, left = int(rows.min()), int(cols.min())
+    shape = [int(rows.max()) - top + 1 + _PADDING_PX, int(cols.max()) - left + 1 + _PADDING_PX]
     v, u = (
         grid.ravel()
         for grid in np.meshgrid(np.fft.fftfreq(shape[0]), np.fft.rfftfreq(shape[1]), indexing="ij")
@@ -93,11 +88,11 @@ def light_of_neighbours(
         x, y = unit_vector(bars.normal_deg)
         f, g = u * x + v * y, v * x - u * y
         outline = bars.spectrum(f) * bars.length_px * np.sinc(bars.length_px * g)
-        place = np.exp(-2j * math.pi * (u * (bars.col - first_col) + v * (bars.row - first_row)))
+        place = np.exp(-2j * math.pi * (u * (bars.col - left) + v * (bars.row - top)))
         image = np.fft.irfft2((transfer * outline * place).reshape(shape[0], -1), shape)
         total += image
-        own.append(image[one.rows - first_row, one.cols - first_col])
+        own.append(image[one.rows - top, one.cols - left])
     return [
-        np.asarray(total[one.rows - first_row, one.cols - first_col] - alone)
+        np.asarray(total[one.rows - top, one.cols - left] - alone)
         for one, alone in zip(pixels, own, strict=True)
     ]

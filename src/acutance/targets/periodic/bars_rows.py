@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
 
-from acutance.geometry.angles import axis_difference
+from acutance.geometry.angles import axis_difference, wrap_axis
 from acutance.geometry.bar_group import Bars
 
 __all__ = ["in_rows"]
@@ -22,28 +25,23 @@ _ASIDE: Final = 0.25
 """How far neighbours may be displaced along their length, in lengths."""
 
 
-def in_rows(alone: Sequence[Bars]) -> list[tuple[list[int], Bars]]:
-    """Groups of single bars.
+def in_rows(alone: Sequence[Bars]) -> list[Bars]:
+    """The groups that single bars make: every row of two and more.
 
     Parameters
     ----------
     alone : sequence of Bars
         Groups of one bar, whose period is twice its width.
-
-    Returns
-    -------
-    list of (list of int, Bars)
-        The numbers of the bars of every row of two and more, and the group that they make.
     """
-    rows = [[number] for number in range(len(alone))]
-    for number, one in enumerate(alone):
-        for other in range(number):
-            if _are_neighbours(one, alone[other]):
-                first, second = (next(row for row in rows if k in row) for k in (number, other))
-                if first is not second:
-                    first += second
-                    rows.remove(second)
-    return [(row, _joined([alone[k] for k in row])) for row in rows if len(row) > 1]
+    if not alone:
+        return []
+    near = [
+        [j < k and _are_neighbours(one, other) for j, other in enumerate(alone)]
+        for k, one in enumerate(alone)
+    ]
+    count, number = connected_components(csr_array(near), directed=False)
+    rows = [[one for one, own in zip(alone, number, strict=True) if own == k] for k in range(count)]
+    return [_joined(row) for row in rows if len(row) > 1]
 
 
 def _are_neighbours(one: Bars, other: Bars) -> bool:
@@ -60,15 +58,14 @@ def _are_neighbours(one: Bars, other: Bars) -> bool:
 
 def _joined(bars: Sequence[Bars]) -> Bars:
     """The group of bars that stand in a row."""
-    middle = bars[0]
-    normal = middle.normal_deg + float(
-        np.mean([(one.normal_deg - middle.normal_deg + 90) % 180 - 90 for one in bars])
-    )
-    row, col = (float(np.mean([getattr(one, name) for one in bars])) for name in ("row", "col"))
-    length = float(np.mean([one.length_px for one in bars]))
-    turned = Bars(row, col, normal, middle.period_px, len(bars), length)
-    places, _ = turned.across_and_along(
-        np.array([one.row for one in bars]), np.array([one.col for one in bars])
-    )
-    period = float(np.ptp(places)) / (len(bars) - 1)
-    return Bars(row, col, normal, period, len(bars), length)
+    first = bars[0]
+    rows, cols, lengths, turns = np.array([
+        (one.row, one.col, one.length_px, wrap_axis(one.normal_deg - first.normal_deg))
+        for one in bars
+    ]).T  # fmt: skip
+    group = replace(
+        first, row=float(rows.mean()), col=float(cols.mean()), count=len(bars),
+        normal_deg=first.normal_deg + float(turns.mean()), length_px=float(lengths.mean()),
+    )  # fmt: skip
+    places, _ = group.across_and_along(rows, cols)
+    return replace(group, period_px=float(np.ptp(places)) / (len(bars) - 1))
