@@ -12,12 +12,14 @@ from acutance import __version__
 from acutance.cli import app as app_module
 from acutance.errors import ImageError
 
+# Made once: it takes a tenth of a second or two.
+WHOLE = get_command(app_module.app)
 HEAVY = ("numpy", "scipy", "matplotlib", "rasterio", "jinja2", "rich", "pydantic")
 
 
 def commands(command=None, words=()):
     """Every command and group of commands, with the words that call it."""
-    command = get_command(app_module.app) if command is None else command
+    command = WHOLE if command is None else command
     yield words, command
     for name, inner in getattr(command, "commands", {}).items():
         yield from commands(inner, (*words, name))
@@ -42,7 +44,7 @@ def test_every_help_ends_with_examples_that_can_be_typed(acutance, words, comman
     for line in typed:
         program, *given = shlex.split(line.split(" > ")[0])
         assert program == "acutance"
-        called = get_command(app_module.app)
+        called = WHOLE
         while hasattr(called, "commands"):
             called = called.commands[given.pop(0)]
         # Parses the line, and refuses an option or an argument that the command does not have.

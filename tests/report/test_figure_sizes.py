@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from test_every_kind import pair, points, scene
 
 import acutance as ac
 from acutance import simulate
@@ -24,14 +25,6 @@ def drawn(measurement, title):
 def edge():
     pixels, _ = simulate.edge(SENSOR, shape=(60, 60), snr=100, rng=np.random.default_rng(0))
     return ac.measure_edge(ac.Image.from_array(pixels, gsd_m=0.7))
-
-
-@pytest.fixture(scope="module")
-def pair():
-    low, high, _ = simulate.pair(
-        SENSOR, SENSOR, ratio=4.0, shape=(96, 96), snr=100, rng=np.random.default_rng(0)
-    )
-    return ac.measure_biresolution(low, high, ratio=4.0)
 
 
 def test_a_long_list_of_checks_stands_below_in_columns(edge):
@@ -70,8 +63,8 @@ def test_the_mtf_of_a_pulse_is_not_squeezed_by_its_table(pulse, measurement):
     assert "<img" in page(measurement).split("<section>")[1]
 
 
-def test_maps_of_a_pair_are_equally_large(pair):
-    figure = drawn(pair, "Map of local statistics")
+def test_maps_of_a_pair_are_equally_large():
+    figure = drawn(pair(), "Map of local statistics")
     maps = [one for one in figure.axes if one.get_title(loc="left")]
     assert len(maps) == 4
     for side in ("width", "height", "y0"):
@@ -80,18 +73,15 @@ def test_maps_of_a_pair_are_equally_large(pair):
     assert all(one.spines["right"].get_visible() for one in maps)
 
 
-def test_tables_have_real_minus_signs(pair):
-    cells = [cell for table in tables(pair) for row in table.rows for cell in row]
+def test_tables_have_real_minus_signs():
+    shown = (*tables(pair()), *tables(points()))
+    cells = [cell for table in shown for row in table.rows for cell in row]
     assert [cell for cell in cells if cell.startswith("−")]
     assert not [cell for cell in cells if cell.startswith("-")]
 
 
 def test_radii_stand_above_the_dots_of_a_scene():
-    pixels, _ = simulate.landscape(
-        SENSOR, shape=(400, 400), snr=100, rng=np.random.default_rng(6),
-        options=simulate.LandscapeOptions(soft=0.0, texture=(0.0, 0.0), density_per_mpx=120),
-    )  # fmt: skip
-    axes = drawn(ac.scan_scene(pixels, workers=1), "By direction").axes[0]
+    axes = drawn(scene(), "By direction").axes[0]
     above = axes.yaxis.get_zorder()
     assert all(one.get_zorder() < above for one in (*axes.collections, *axes.lines))
 

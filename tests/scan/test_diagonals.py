@@ -24,9 +24,11 @@ class Oblique:
         (Oblique(), "doubtful"),
     ],
 )
-def test_a_sensor_is_the_same_along_both_diagonals(blur, word):
+def test_a_sensor_is_the_same_along_both_diagonals(blur, word, few_forms):
     sensor = optics.Sensor([blur, optics.Detector()])
-    scene, check = check_of_bare_ground("diagonals", sensor, 560, 90, seed=5)
+    # All three are Gaussian, as both forms that are left are, in any direction.
+    with few_forms():
+        scene, check = check_of_bare_ground("diagonals", sensor, 560, 90, seed=5)
     assert check.passed == (word != "doubtful")
     assert scene.verdict.word == word
     if word == "doubtful":
