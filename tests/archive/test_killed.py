@@ -2,36 +2,21 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import signal
-import subprocess
-import sys
 import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from orjson import loads
 
-from acutance.archive import Archive
-from acutance.archive.exchange.entry_document import entry_document
+from acutance.archive import Archive, adding
+from acutance.archive.exchange.entry_document import entry_document, entry_of_document
 from acutance.archive.packing import json_bytes
 
-WRITER = """
-import sys
-from orjson import loads
-from acutance.archive import Archive, adding
-from acutance.archive.exchange.entry_document import entry_of_document
-
-adding.CHUNK = 4
-place, lines, first = sys.argv[1:]
-entries = [entry_of_document(loads(line)) for line in open(lines, "rb")]
-entries = entries[int(first):] + entries[: int(first)]
-print("ready", flush=True)
-sys.stdin.readline()
-with Archive(place) as archive:
-    for i in range(0, len(entries), 4):
-        archive.add_entries(entries[i : i + 4])
-        # What is printed was reported as kept.
-        print(*(entry.key for entry in entries[i : i + 4]), flush=True)
-"""
 COUNT = 120
 
 
@@ -44,36 +29,74 @@ def lines(entry_of, tmp_path):
     return path
 
 
-def begin(place, lines, first=0):
-    process = subprocess.Popen(
-        [sys.executable, "-c", WRITER, place, str(lines), str(first)],
-        stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
-    )  # fmt: skip
-    assert process.stdout.readline() == "ready\n"
-    return process
+def write(place: str, lines: Path, first: int, heard: Any, said: Any) -> None:
+    """Keep all entries, four at a time, and report every four that are kept."""
+    adding.CHUNK = 4
+    entries = [entry_of_document(loads(line)) for line in lines.read_bytes().splitlines()]
+    entries = entries[first:] + entries[:first]
+    said.send("ready")
+    heard.recv()
+    with Archive(place) as archive:
+        for i in range(0, len(entries), 4):
+            archive.add_entries(entries[i : i + 4])
+            # What is sent was reported as kept.
+            said.send([entry.key for entry in entries[i : i + 4]])
 
 
-def let_go(process):
-    process.stdin.write("\n")
-    process.stdin.flush()
+class Writer:
+    """A process that writes once it is let go.
+
+    Attributes
+    ----------
+    process : Process
+    """
+
+    def __init__(self, context: Any, place: str, lines: Path, first: int = 0) -> None:
+        heard, self._mouth = context.Pipe(duplex=False)
+        self._ear, said = context.Pipe(duplex=False)
+        self.process = context.Process(target=write, args=(place, lines, first, heard, said))
+        self.process.start()
+        heard.close()
+        said.close()
+        assert self._ear.recv() == "ready"
+
+    def let_go(self) -> None:
+        """Let it write."""
+        self._mouth.send("go")
+
+    def reported(self) -> Iterator[list[str]]:
+        """What it reports until it ends; a report that was cut is none."""
+        try:
+            while True:
+                yield self._ear.recv()
+        except (EOFError, OSError):
+            self.process.join()
 
 
-def test_what_was_reported_is_kept_whenever_a_process_is_killed(place, lines):
+@pytest.fixture(scope="module")
+def begin() -> Callable[..., Writer]:
+    """Begin a process, forked from one that has loaded everything: loading takes a second."""
+    context = multiprocessing.get_context("forkserver")
+    own = (Archive.__module__, adding.__name__, entry_document.__module__, json_bytes.__module__)
+    context.set_forkserver_preload(["pytest", "sqlalchemy.dialects.sqlite", "psycopg", *own])
+    return lambda *words: Writer(context, *words)
+
+
+def test_what_was_reported_is_kept_whenever_a_process_is_killed(place, lines, begin):
     """Killed six times at random moments; the archive is open for the next at once."""
     rng = np.random.default_rng(8)
-    reported, finished = set(), False
+    reported = set()
     for _ in range(6):
-        process = begin(place, lines)
-        let_go(process)
+        writer = begin(place, lines)
+        writer.let_go()
         # The first words are those after the tables were made.
-        heard = process.stdout.readline()
+        heard = writer.reported()
+        reported |= set(next(heard, []))
         time.sleep(float(rng.uniform(0.0, 0.08)))
-        process.send_signal(signal.SIGKILL)
-        said, _ = process.communicate()
-        finished |= process.returncode == 0
-        # A line that was cut was not reported.
-        whole = (heard + said).rpartition("\n")[0]
-        reported |= set(whole.split())
+        writer.process.kill()
+        for keys in heard:
+            reported |= set(keys)
+        assert writer.process.exitcode in (0, -signal.SIGKILL)
         with Archive(place) as archive:
             keys = archive.keys()
             found = archive.measurements()
@@ -81,21 +104,21 @@ def test_what_was_reported_is_kept_whenever_a_process_is_killed(place, lines):
         assert len(set(found["id"].tolist())) == len(found) == len(keys)
         assert len(keys) % 4 == 0
     assert reported
-    process = begin(place, lines)
-    let_go(process)
-    process.communicate()
+    writer = begin(place, lines)
+    writer.let_go()
+    assert len(list(writer.reported())) == COUNT // 4
     with Archive(place) as archive:
         assert len(archive.keys()) == COUNT == len(archive.measurements().records())
 
 
-def test_two_processes_add_the_same(place, lines):
+def test_two_processes_add_the_same(place, lines, begin):
     """From both ends; every entry is kept once, and neither fails."""
-    processes = [begin(place, lines, first) for first in (0, COUNT // 2)]
-    for process in processes:
-        let_go(process)
-    said = [process.communicate()[0] for process in processes]
-    assert [process.returncode for process in processes] == [0, 0]
-    assert all(len(text.split()) == COUNT for text in said)
+    writers = [begin(place, lines, first) for first in (0, COUNT // 2)]
+    for writer in writers:
+        writer.let_go()
+    said = [[key for keys in writer.reported() for key in keys] for writer in writers]
+    assert [writer.process.exitcode for writer in writers] == [0, 0]
+    assert all(len(keys) == COUNT for keys in said)
     with Archive(place) as archive:
         found = archive.measurements()
         assert len(found) == COUNT == len(archive.keys())
