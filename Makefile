@@ -3,16 +3,26 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: test demo docs lint loops modules clean
+.PHONY: test ready run demo docs lint loops modules clean
 
-$(VENV)/.installed: pyproject.toml
+# The package alone: loops are compiled while the rest is installed.
+$(VENV)/.measures: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e .
+	touch $@
+
+$(VENV)/.installed: $(VENV)/.measures
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[test,lint]"
 	touch $@
 
+test:
+	$(MAKE) --jobs=2 ready
+	$(MAKE) run
+
+ready: loops lint modules
+
 # In lots of at most 200 tests: one core is not left with all the long ones of the end.
-test: $(VENV)/.installed
-	$(MAKE) --jobs=2 lint loops modules
+run: $(VENV)/.installed
 	$(BIN)/python -m pytest -n 2 --maxschedchunk 200
 
 lint: $(VENV)/.installed
@@ -21,7 +31,7 @@ lint: $(VENV)/.installed
 	$(BIN)/mypy
 
 # Compiled once, beside the linters, and not by each process that runs tests.
-loops: $(VENV)/.installed
+loops: $(VENV)/.measures
 	$(BIN)/python tests/compile_loops.py
 
 # The same of all modules of tests, while a core has nothing to do; what fails here is said by the run of tests.
