@@ -28,11 +28,18 @@ def scene(tmp_path_factory):
     return path
 
 
-def test_a_scene_is_measured_and_its_edges_are_written(acutance, scene, tmp_path, keeps_to_schema):
+@pytest.fixture(scope="module")
+def kept(scene):
+    """Words by which runs over the scene share its windows: the first one scans them."""
+    return "--workers", 1, "--keep", scene.with_name("scene.parts")
+
+
+def test_a_scene_is_measured_and_its_edges_are_written(
+    acutance, scene, kept, tmp_path, keeps_to_schema, few_forms
+):
     table = tmp_path / "edges.csv"
-    done = acutance(
-        "scan", scene, "--json", "--workers", 1, "--edges", table, "--field", "2x4"
-    )  # fmt: skip
+    with few_forms():
+        done = acutance("scan", scene, *kept, "--json", "--edges", table, "--field", "2x4")
     assert done.exit_code == 0, done.stderr
     document = json.loads(done.stdout)
     keeps_to_schema(document)
@@ -74,9 +81,9 @@ def colours(scene):
     return path
 
 
-def test_a_softness_of_all_objects_is_stated(acutance, scene, keeps_to_schema, few_forms):
+def test_a_softness_of_all_objects_is_stated(acutance, scene, kept, keeps_to_schema, few_forms):
     with few_forms():
-        done = acutance("scan", scene, "--json", "--workers", 1, "--target-softness-m", "0.2+-0.1")
+        done = acutance("scan", scene, *kept, "--json", "--target-softness-m", "0.2+-0.1")
     assert done.exit_code == 0, done.stderr
     document = json.loads(done.stdout)
     keeps_to_schema(document)
@@ -142,9 +149,9 @@ def test_edges_of_a_map_have_longitude_and_latitude(acutance, scene, tmp_path, f
     assert [float(row["lat_deg"]) for row in rows] == pytest.approx(lat.tolist(), abs=1e-8)
 
 
-def test_a_page_is_of_the_scene(acutance, scene, tmp_path, shown, few_forms):
+def test_a_page_is_of_the_scene(acutance, scene, kept, tmp_path, shown, few_forms):
     with few_forms():
-        done = acutance("scan", scene, "--workers", 1, "--report", tmp_path / "scan.html")
+        done = acutance("scan", scene, *kept, "--report", tmp_path / "scan.html")
     assert done.exit_code == 0, done.stderr
     ((name, result, _),) = [call for call in shown if call[0] == "page"]
     assert (name, result.kind) == ("page", "scene")
