@@ -355,17 +355,27 @@ def test_what_was_written_is_told_where_no_edge_proves_it(acutance, folder, tmp_
     assert (tmp_path / "o.tif").exists()
 
 
-def test_an_overshoot_is_stated_in_per_cent_as_well(acutance, folder):
-    documents = []
+def test_an_overshoot_is_stated_in_per_cent_as_well(acutance, folder, monkeypatch):
+    """The second request is the first one: its filter need not be made again."""
+    made, asked = [], []
+    design = ac.restoration.design_restoration
+
+    def once(*known, **how):
+        asked.append(how)
+        made.append(made[0] if made else design(*known, **how))
+        return made[-1]
+
+    monkeypatch.setattr("acutance.restoration.design_restoration", once)
+    out = folder / "over.json"
     for text in ("4%", "0.04"):
-        out = folder / "over.json"
         result = acutance(
             "restore", "design", folder / "across.json", folder / "along.json", "--size", 5,
             "--overshoot", text, "--out", out,
         )  # fmt: skip
         assert result.exit_code == 0, result.stderr
-        documents.append(json.loads(out.read_text())["kernel"])
-    assert documents[0] == documents[1]
+    assert [one["overshoot"] for one in asked] == [0.04, 0.04]
+    assert asked[0] == asked[1]
+    assert np.shape(json.loads(out.read_text())["kernel"]) == (5, 5)
     refused = acutance(
         "restore", "design", folder / "across.json", "--overshoot", "much", "--out", out
     )

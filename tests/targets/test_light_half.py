@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -54,6 +55,7 @@ def star(method: str) -> ac.Measurement:
     return ac.measure_star(image, method=method, gsd_m=0.7)
 
 
+@cache
 def combined(method: str) -> ac.Measurement:
     found = ac.combine([edge("spline"), edge("spline", "along")])
     assert found.method == method

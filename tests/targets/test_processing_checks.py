@@ -99,11 +99,23 @@ def test_either_image_of_a_pair_counts():
     assert failed(ac.measure_biresolution(low, high, ratio=3)) == {"repeated_pixels"}
 
 
-def test_scenes_are_asked_once_and_not_by_their_edges(few_forms):
+@pytest.fixture(scope="module")
+def ground():
+    """A landscape, larger than what is scanned of it."""
+    return simulate.landscape(SENSOR, shape=(470, 470), snr=60, rng=np.random.default_rng(5))[0]
+
+
+@pytest.fixture(scope="module")
+def plain(ground, few_forms):
+    """A scan of whole numbers that nothing was done to."""
+    with few_forms():
+        return ac.scan_scene(np.rint(ground[:400, :400]), workers=1)
+
+
+def test_scenes_are_asked_once_and_not_by_their_edges(plain, few_forms):
     image, _ = simulate.landscape(SENSOR, shape=(400, 400), snr=60, rng=np.random.default_rng(3))
     written = ac.Image.from_array(as_jpeg(image, 85), gsd_m=0.5)
     with few_forms():
-        plain = ac.scan_scene(np.rint(image), workers=1)
         compressed = ac.scan_scene(written, gsd_m=30.0, workers=1)
     assert not failed(plain)
     assert failed(compressed) == {"jpeg_blocks"}
@@ -112,12 +124,10 @@ def test_scenes_are_asked_once_and_not_by_their_edges(few_forms):
     assert not any("JPEG" in reason for reason in compressed.edges.reason)
 
 
-def test_an_interpolated_scene_says_by_how_much(few_forms):
-    image, _ = simulate.landscape(SENSOR, shape=(470, 470), snr=60, rng=np.random.default_rng(5))
+def test_an_interpolated_scene_says_by_how_much(ground, plain, few_forms):
     at = np.arange(400) / 1.1 + 50.0
-    enlarged_image = simulate.resample(image, at[:, None], at, kernel="cubic")
+    enlarged_image = simulate.resample(ground, at[:, None], at, kernel="cubic")
     with few_forms():
-        plain = ac.scan_scene(image[:400, :400], workers=1)
         found = ac.scan_scene(enlarged_image, workers=1)
     (check,) = (one for one in found.checks if one.name == "periodic_noise")
     assert not check.passed

@@ -133,7 +133,13 @@ class Diffraction:
         require(self, 0.0, 0.99, obscuration=self.obscuration)
 
     def otf(self, u: Floats, v: Floats) -> Transfer:
-        return aperture_transfer(np.hypot(u, v) / self.cutoff_cpp, self.obscuration)
+        nu = np.asarray(np.hypot(u, v) / self.cutoff_cpp)
+        inside = nu < 1
+        if nu.ndim == 0 or inside.all():
+            return aperture_transfer(nu, self.obscuration)
+        otf = np.zeros(nu.shape)
+        otf[inside] = aperture_transfer(nu[inside], self.obscuration)
+        return otf
 
 
 def aperture_transfer(nu: Floats, obscuration: Floats | float) -> Floats:

@@ -40,6 +40,10 @@ MTF(.25) and RER .002 too high."""
 
 MAX_SAMPLES = 40_000_000
 
+_MANY_FIELDS = 1 << 16
+"""Lines cut ground into fewer fields than there are sides to lie on: above so many they are
+counted."""
+
 Complexes = NDArray[np.complex128]
 
 
@@ -337,24 +341,48 @@ def pair_ground(
     require_whole(1, period=period)
     require_kind(PairGround, ground=ground)
     rng = require_rng(rng, "ground of a pair")
-    rows = np.arange(shape[0])[:, None] / max(shape)
-    cols = np.arange(shape[1])[None, :] / max(shape)
-    cell = np.zeros(shape, np.int64)
-    for _ in range(ground.fields):
-        angle, place = rng.uniform(0, math.pi), rng.uniform(-0.45, 0.45)
-        across = (cols - 0.5) * math.cos(angle) + (rows - 0.5) * math.sin(angle)
-        cell = 2 * cell + (across > place)
-    _, number = np.unique(cell, return_inverse=True)
-    count = int(number.max()) + 1
+    number, count = _fields(shape, ground.fields, rng)
     level = rng.permutation(np.linspace(0.0, 1.0, count) if count > 1 else np.array([0.5]))
-    radiance: Floats = level[number.reshape(shape)]
+    radiance: Floats = level[number]
     if ground.texture > 0:
-        v = fft.fftfreq(shape[0])[:, None] * period
+        # Frequencies of either sign have one amplitude.
+        v = fft.rfftfreq(shape[0])[:, None] * period
         u = fft.rfftfreq(shape[1])[None, :] * period
-        amplitude = (np.hypot(u, v) ** 2 + (1 / 64) ** 2) ** (-ground.slope / 4)
-        noise = fft.irfft2(fft.rfft2(rng.standard_normal(shape)) * amplitude, shape)
+        half = (np.hypot(u, v) ** 2 + (1 / 64) ** 2) ** (-ground.slope / 4)
+        spectrum = fft.rfft2(rng.standard_normal(shape))
+        spectrum[: len(half)] *= half
+        spectrum[len(half) :] *= half[1 : shape[0] - len(half) + 1][::-1]
+        noise = fft.irfft2(spectrum, shape)
         radiance = radiance + ground.texture * noise / noise.std()
     return radiance
+
+
+def _fields(
+    shape: tuple[int, int], lines: int, rng: np.random.Generator
+) -> tuple[NDArray[np.intp], int]:
+    """The number of the field every sample lies in, (rows, cols), and of all fields.
+
+    Straight lines cut the ground into fields: those that lie on the same sides of all of them.
+    """
+    rows = np.arange(shape[0])[:, None] / max(shape)
+    cols = np.arange(shape[1])[None, :] / max(shape)
+    number, count = np.zeros(shape, np.intp), 1
+    across = np.empty(shape)
+    for _ in range(lines):
+        angle, place = rng.uniform(0, math.pi), rng.uniform(-0.45, 0.45)
+        np.add((cols - 0.5) * math.cos(angle), (rows - 0.5) * math.sin(angle), out=across)
+        number *= 2
+        number += across > place
+        count *= 2
+        if count > _MANY_FIELDS:
+            number, count = _counted(number, count)
+    return _counted(number, count)
+
+
+def _counted(number: NDArray[np.intp], most: int) -> tuple[NDArray[np.intp], int]:
+    """Numbers below `most`, those that are none left out."""
+    is_one = np.bincount(number.ravel(), minlength=most) > 0
+    return (np.cumsum(is_one) - 1)[number], int(is_one.sum())
 
 
 def _seen(
