@@ -55,7 +55,7 @@ class PostgresServer:
 
     def make(self) -> None:
         """Make the folder of the data."""
-        self._call("initdb", "-D", self._data, "-A", "trust", "-U", "tester", "-E", "UTF8")
+        self._call("initdb", "-N", "-D", self._data, "-A", "trust", "-U", "tester", "-E", "UTF8")
 
     def new_database(self, name: str) -> str:
         """The URL of an empty database."""

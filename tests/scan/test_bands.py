@@ -71,27 +71,31 @@ def found(bands):
     return ac.scan_bands(bands)
 
 
-def test_one_band_is_a_scene(bands, few_forms):
+@pytest.fixture(scope="module")
+def alone(bands, few_forms):
+    """The first band as a scene."""
+    with few_forms():
+        return ac.scan_scene(bands[0])
+
+
+def test_one_band_is_a_scene(bands, alone, few_forms):
     with few_forms():
         whole = ac.Region.from_box(ac.Box.whole(bands[0].shape))
-        scene = ac.scan_scene(bands[0])
         several = ac.scan_bands(bands[:1], roi=replace(whole, name="La Crau"))
     assert several.scenes["1"].image.region == "La Crau"
-    for name, column in scene.edges.columns().items():
+    for name, column in alone.edges.columns().items():
         np.testing.assert_array_equal(column, several.scenes["1"].edges.columns()[name])
-    assert several.scenes["1"].across.mtf_nyquist == scene.across.mtf_nyquist
+    assert several.scenes["1"].across.mtf_nyquist == alone.across.mtf_nyquist
     assert several.shifts == {}
 
 
-def test_all_bands_have_the_same_edges(bands, found, few_forms):
+def test_all_bands_have_the_same_edges(found, alone):
     first, other = (scene.edges for scene in found.measurements)
     assert first.size == other.size
     both = first.used & other.used
     assert both.sum() > 0.9 * first.used.sum()
     away = np.hypot(first.row - other.row, first.col - other.col)[both]
     assert np.median(away) < 0.5
-    with few_forms():
-        alone = ac.scan_scene(bands[0])
     assert both.sum() > 0.9 * alone.edges.used.sum()
     expected = float(np.abs(SENSOR.otf(np.array([0.5]), np.array([0.0])))[0])
     for scene in found.measurements:

@@ -23,7 +23,6 @@ NYQUIST = 0.01
 """What the MTF at Nyquist may be wrong by at SNR 100."""
 
 
-@cache
 def rendered(
     system: str = "smeared",
     ratio: float = 2.0,
@@ -31,6 +30,19 @@ def rendered(
     shape: tuple[int, int] = (96, 104),
     shift: tuple[float, float] = (1.3, -0.6),
     snr: float | None = 100.0,
+) -> tuple[Floats, Floats, PairTruth]:
+    """A pair that is simulated once, whichever of these are left out."""
+    return _rendered(system, ratio, seed, shape, shift, snr)
+
+
+@cache
+def _rendered(
+    system: str,
+    ratio: float,
+    seed: int,
+    shape: tuple[int, int],
+    shift: tuple[float, float],
+    snr: float | None,
 ) -> tuple[Floats, Floats, PairTruth]:
     return ac.simulate.pair(
         SYSTEMS[system],
@@ -45,13 +57,20 @@ def rendered(
     )
 
 
-@cache
 def measured(
     system: str = "smeared",
     ratio: float = 2.0,
     seed: int = 1,
     method: str = "kernel-fit",
     shape: tuple[int, int] = (96, 104),
+) -> ac.BiresolutionMeasurement:
+    """What is measured of it, once as well."""
+    return _measured(system, ratio, seed, method, shape)
+
+
+@cache
+def _measured(
+    system: str, ratio: float, seed: int, method: str, shape: tuple[int, int]
 ) -> ac.BiresolutionMeasurement:
     low, high, _ = rendered(system, ratio, seed, shape)
     return ac.measure_biresolution(low, high, reference_mtf=REFERENCE, method=method)

@@ -51,16 +51,24 @@ def bars_scene(name="gaussian", seed=1, **arguments):
     return bars(SENSORS[name], rng=np.random.default_rng(seed), **arguments)
 
 
-@cache
 def measured_star(name="gaussian", seed=1, *, stated=True):
-    """Measurement and truth of a star."""
+    """Measurement and truth of a star, made once, whichever of these are left out."""
+    return _measured_star(name, seed, stated)
+
+
+def measured_bars(name="gaussian", seed=1, *, stated=True):
+    """Measurement and truth of groups of bars, once as well."""
+    return _measured_bars(name, seed, stated)
+
+
+@cache
+def _measured_star(name, seed, stated):
     image, truth = star_scene(name, seed)
     return measure_star(image, cycles=CYCLES, options=STATED if stated else None), truth
 
 
 @cache
-def measured_bars(name="gaussian", seed=1, *, stated=True):
-    """Measurement and truth of groups of bars."""
+def _measured_bars(name, seed, stated):
     image, truth = bars_scene(name, seed)
     return measure_bars(image, options=STATED_BARS if stated else None), truth
 
