@@ -1,5 +1,5 @@
 """What tests of several rooms need: the command line run inside the test, a private server of
-PostgreSQL, scenes that are fitted fast."""
+PostgreSQL, scenes that are fitted fast, pages without drawings."""
 
 from __future__ import annotations
 
@@ -139,6 +139,15 @@ def acutance() -> Iterator[Callable[..., Any]]:
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr("typer.testing._get_command", cache(get_command), raising=False)
         yield run
+
+
+@pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pages whose words and tables are asked: drawings take most of their time.
+
+    Figures are made and not written. Of every kind of page another test writes them.
+    """
+    monkeypatch.setattr("acutance.report.html.figure_bytes", lambda figure, ending: b"")
 
 
 @pytest.fixture(scope="session")

@@ -133,6 +133,7 @@ def test_methods_are_compared(acutance, edge_image, shown, tmp_path):
     assert document["rejected"] == []
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_method_that_cannot_measure_leaves_the_others_their_results(acutance, tmp_path):
     """At 14 degrees the phases repeat after four rows, too few for the method of 2005."""
     image, _ = simulate.edge(
@@ -289,6 +290,7 @@ def test_statements_that_are_no_numbers_are_refused(acutance, edge_image, wrong)
     assert " ".join(wrong) in result.stderr
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_requirements_are_answered_everywhere(acutance, edge_image, tmp_path, keeps_to_schema):
     words = ("edge", edge_image, "--require", "mtf_nyquist>=0.09", "--require", "fwhm_m <= 0.1")
     text = acutance(*words, "--report", tmp_path / "edge.html")

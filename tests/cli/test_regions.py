@@ -102,6 +102,7 @@ def test_every_polygon_is_measured_as_it_would_be_alone(acutance, folder, tmp_pa
     assert both["rejected"] == []
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_name_of_a_region_is_in_its_page_and_its_document(acutance, folder, tmp_path):
     write_polygons(tmp_path / "one.geojson", {"field A/1": PLACES["field A/1"]})
     page = tmp_path / "edge.html"
@@ -138,6 +139,7 @@ def test_texts_and_files_carry_the_names(acutance, folder, shown, tmp_path):
     assert len(shown) == 2
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_page_stands_in_the_place_of_the_polygon_without_a_target(acutance, folder, tmp_path):
     page = tmp_path / "edge.html"
     result = measured(acutance, folder, "--report", page)

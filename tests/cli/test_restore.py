@@ -228,6 +228,7 @@ def test_the_file_that_is_no_measurement_is_named(acutance, folder, tmp_path):
         assert "filter.json is a document acutance/restoration/1" in result.stderr
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_notes_name_the_file_and_the_failed_checks_of_the_combination(acutance, folder, tmp_path):
     document = json.loads((folder / "along.json").read_text())
     del document["image"]["gsd_m"], document["image"]["pixel_gsd_m"]

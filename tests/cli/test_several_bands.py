@@ -125,6 +125,7 @@ def named(image, tmp_path_factory):
     return place
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_bands_are_called_by_their_names(acutance, refused, named, tmp_path):
     page = tmp_path / "e.html"
     done = acutance("edge", named, "--band", "b3", "--json", "--report", page)

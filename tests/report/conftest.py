@@ -141,15 +141,6 @@ class Blurred:
         return (-0.02 * (u_cpp**2 + v_cpp**2) * self.otf(u_cpp, v_cpp))[:, None]
 
 
-@pytest.fixture
-def undrawn(monkeypatch):
-    """Pages whose words and tables are asked: drawings take most of their time.
-
-    Figures are made and not written. Of every kind of page another test writes them.
-    """
-    monkeypatch.setattr("acutance.report.html.figure_bytes", lambda figure, ending: b"")
-
-
 @pytest.fixture(scope="session")
 def both() -> Measurement:
     """A measurement in two directions, of a kind that no table knows."""

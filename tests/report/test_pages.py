@@ -116,6 +116,7 @@ def test_every_image_has_words_for_those_who_cannot_see_it(edge_page):
     assert all(image.get("alt") for image in parsed(edge_page).findall(".//img"))
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_text_from_outside_is_escaped(measurement):
     hostile = '<script>alert("&")</script>'
     odd = replace(
@@ -145,6 +146,7 @@ def test_without_details_a_page_has_its_curves_alone(measurement):
     assert "Edge spread function" not in words(html)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_comparison_shows_verdicts_the_target_and_one_table(compared, truth):
     html = page(compare(compared, truth=truth))
     text = words(html)

@@ -48,6 +48,7 @@ def test_a_change_without_a_deviation_has_the_sign_of_other_numbers(sharpening):
     assert re.search(r" −0\.\d+$", line)
 
 
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize(
     ("sources", "notes", "shown"),
     [

@@ -10,7 +10,7 @@ from test_every_kind import scene
 from test_figures import outside, overlaps, texts
 
 from acutance.errors import OptionError, RegionError
-from acutance.report import draw, figure_bytes, page, panels, reasons_text, text
+from acutance.report import draw, page, panels, reasons_text, text
 from acutance.report.figures.scene_population import expected_counts, scatter_of
 from acutance.report.figures.scene_sensor import EdgesSeen, edges_seen, sensor_along
 from acutance.report.paper import new_page, styled
@@ -134,6 +134,7 @@ def test_a_few_used_edges_are_thicker_and_longer_than_many(measured):
                                                        PANELS[0])[1].caption  # fmt: skip
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_map_is_drawn_on_a_quick_look(measured):
     assert not panel_axes(measured, PANELS[0])[0][0].images
     quick = RNG.normal(100.0, 5.0, (60, 70))
@@ -253,7 +254,7 @@ def test_eight_edges_and_columns_without_numbers_are_drawn(measured):
     (axes,), _ = panel_axes(few, PANELS[2])
     assert axes.patches[0].get_data().values.sum() == 2
     edges.mtf_nyquist[:] = np.nan
-    figure_bytes(draw(replace(few, details=None)), ".png")
+    draw(replace(few, details=None)).draw_without_rendering()
 
 
 def test_labels_stay_apart_at_many_edges(measured):

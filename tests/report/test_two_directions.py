@@ -85,6 +85,7 @@ def test_the_csv_holds_both_directions(both):
         assert float(found["freq_cpm"]) == pytest.approx(0.5 / response.gsd_m, abs=1e-6)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_text_and_page_hold_numbers_of_both_directions_and_complaints(both):
     shown, whole = text(both), page(both, command="acutance points scene.tif")
     for number in (both.across.mtf_nyquist, both.along.mtf_nyquist):

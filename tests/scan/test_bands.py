@@ -55,12 +55,6 @@ def two_bands(seed, size=400, density=120, noise_seed=0):
     return [one + noise.normal(0, NOISE, (size, size)) for one in bands]
 
 
-@pytest.fixture
-def undrawn(monkeypatch):
-    """Pages without drawings: the command's tests draw those of bands."""
-    monkeypatch.setattr("acutance.report.html.figure_bytes", lambda figure, ending: b"")
-
-
 @pytest.fixture(scope="module")
 def bands():
     return two_bands(3)

@@ -147,7 +147,8 @@ def test_a_polygon_leaves_out_what_lies_beside_it(ideal, few_forms):
     assert (part.edges.row + part.edges.col).max() < 605
 
 
-def test_documents_tables_and_figures(ideal, monkeypatch):
+@pytest.mark.usefixtures("undrawn")
+def test_documents_tables_and_figures(ideal):
     _, _, scene = ideal
     document = json.loads(json.dumps(scene.to_dict()))
     assert document["edges"]["used"] == int(scene.edges.used.sum())
@@ -166,8 +167,6 @@ def test_documents_tables_and_figures(ideal, monkeypatch):
     assert "Edges of the scene" in ac.report.text(scene)
     assert "Sharpness over the field" in ac.report.text(scene)
     assert len(ac.report.draw(scene).axes) > 5
-    # The words of its page: other tests write its drawings.
-    monkeypatch.setattr("acutance.report.html.figure_bytes", lambda figure, ending: b"")
     assert "Sharpness of the edges" in ac.report.page(scene)
 
 

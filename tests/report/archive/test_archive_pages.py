@@ -122,6 +122,7 @@ def test_no_change_is_no_good_news_where_little_could_be_found(count, sought):
     assert ("probability of no step" in page) == trend.steps_are_sought == (count >= 8)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_steps_that_are_not_sought_have_no_probability_in_the_state(edge_record, tmp_path):
     with Archive(tmp_path / "few.db") as few:
         for at in range(4):
@@ -208,6 +209,7 @@ def test_the_page_of_a_sensor_has_its_state_changes_and_images(archive):
     assert "By target, across" in page
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_all_limits_of_the_metric_that_apply_to_the_sensor_are_drawn(
     archive, tmp_path, monkeypatch
 ):
@@ -272,6 +274,7 @@ def test_across_and_along_are_compared_at_the_top(tmp_path, edge_record):
     assert "First minus second" in page
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_sentences_and_tables_have_one_sign(tmp_path, edge_record):
     """The larger one came first in the sentence, the first one in the table."""
     with Archive(tmp_path / "both.db") as made:
@@ -303,6 +306,7 @@ def test_requirements_come_first(archive, tmp_path):
     assert "More images: how many would tell" in page
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_notes_of_a_state_are_not_repeated_by_the_answers_above_it(archive, tmp_path):
     spec = tmp_path / "spec.toml"
     spec.write_text(SPEC, encoding="utf-8")
@@ -399,6 +403,7 @@ def test_bands_are_in_the_order_of_their_numbers(tmp_path, edge_record):
     assert f'<td class="r">{BEGIN:%Y-%m-%d}</td>' in page
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_numbers_of_a_table_have_the_digits_of_their_deviations(archive):
     assert signed(-0.04) == "0.0"
     assert signed(-1.26) == "−1.3"
@@ -421,6 +426,7 @@ def test_an_image_dated_to_the_day_has_no_time(tmp_path, edge_record):
     assert shown == ["2026-01-05", "2026-01-06 10:20", MISSING]
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_targets_that_an_image_does_not_show_are_named_and_not_called_rejected(
     tmp_path, edge_record
 ):
