@@ -5,6 +5,7 @@ from acutance.simulate.campaign import Placed, brookings, render_site
 from acutance.simulate.edge import Truth, edge, render_edge
 from acutance.simulate.galaxy import Galaxy
 from acutance.simulate.ground import GroundNoise, alias_bands, render_raster
+from acutance.simulate.ground_of_pair import PairGround, pair_ground
 from acutance.simulate.landscape import LandscapeTruth, landscape, landscape_tiles
 from acutance.simulate.landscape_edges import Beside, LandscapeEdge
 from acutance.simulate.landscape_layout import Waves
@@ -12,7 +13,7 @@ from acutance.simulate.landscape_options import LandscapeOptions
 from acutance.simulate.native_grid import NativeGrid
 from acutance.simulate.noise import Noise
 from acutance.simulate.overflights import Overflight, overflights
-from acutance.simulate.pair import PairGround, PairTruth, pair, pair_ground
+from acutance.simulate.pair import PairTruth, pair
 from acutance.simulate.parcel import Border, Parcel, SideStrip
 from acutance.simulate.parcel_image import render_parcels
 from acutance.simulate.points import PointsTruth, mirror_columns, mirror_square, points
