@@ -8,7 +8,7 @@ import tomllib
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from importlib import import_module
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 import pytest
@@ -164,6 +164,33 @@ def test_steps_events_and_limits_are_drawn_where_they_are():
     assert 0.25 in levels
 
 
+def test_names_of_events_stay_in_the_drawing_and_apart():
+    long = "cold restart of the focal plane, its heaters and everything else that was on that day"
+    events = [Event("2023-09-01", long), Event("2024-05-01", "heater"),
+              Event("2024-05-04", "focus"), Event("2024-05-08", "clock")]  # fmt: skip
+    figure = trend_figure(fit_trend(series_of(), events))
+    figure.draw_without_rendering()
+    axes = figure.axes[0]
+    labels = [one for one in axes.texts if one.get_rotation() == 90]
+    assert [one.get_text().strip()[:12] for one in labels] == ["cold restart", "heater, focu"]
+    boxes = [one.get_window_extent() for one in labels]
+    assert boxes[0].x1 < boxes[1].x0
+    assert all(axes.bbox.y0 < box.y0 < box.y1 < axes.bbox.y1 for box in boxes)
+    # Two of them lie between the same two images.
+    assert len([one for one in axes.get_lines() if one.get_linestyle() == "-."]) == len(events)
+
+
+def test_an_event_without_images_on_both_sides_is_a_note_and_nothing_drawn():
+    """Far from the axis its name left no room for the drawing."""
+    events = [Event("1990-01-01", "launch"), Event("2060-01-01", "end", changes_drift=True)]
+    trend = fit_trend(series_of(), [*events, REFOCUS])
+    assert [event.name for event in trend.events] == ["refocus"]
+    assert "No image shows what launch, end did" in trend.summary()
+    assert "launch (1990-01-01)" not in trend.summary()
+    axes = trend_figure(trend).axes[0]
+    assert [one.get_text().strip() for one in axes.texts if one.get_rotation() == 90] == ["refocus"]
+
+
 def test_limits_are_labelled_beside_the_axes_and_far_ones_do_not_stretch_them():
     trend = fit_trend(series_of())
     own = trend_figure(trend).axes[0].get_ylim()
@@ -245,7 +272,7 @@ def test_every_number_of_the_state_has_its_own_drift(archive):
         )
         assert level == word_estimate(trend.level).value_and_std
         assert drift == f"{percent(trend.relative_rate_per_year)} a year"
-    assert "2025-01-01 refocus" in row[-1]
+    assert row[-1].splitlines() == ["none found (1.00)", "2025-01-01 refocus: no image shows it"]
     page = words_of(sensor_page(archive, "QB02", metric="fwhm_m"))
     assert "below it the drift of that number" in page
 
@@ -344,6 +371,32 @@ def test_curves_of_bands_are_drawn_apart(tmp_path, edge_record):
         page = words_of(sensor_page(made, "QB02"))
     assert "red: the latest 2 measurements across, and their median" in page
     assert "blue: the latest 1 measurement across." in page
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_comparisons_of_many_bands_are_counted_where_they_are_not_all_said(tmp_path, edge_record):
+    """Six bands of eight stood there as if they were all."""
+    rng = np.random.default_rng(3)
+    with Archive(tmp_path / "bands.db") as made:
+        for at, band, direction in product(range(3), range(1, 9), ("across", "along")):
+            number = {**edge_record.document["mtf_nyquist"], "value": 0.3 + 0.01 * rng.random()}
+            shown = {"orientation": direction, "measured_directions": [direction], "budget": []}
+            record = ac.Record({**edge_record.document, "mtf_nyquist": number, **shown})
+            image = ImageEntry(path=f"{at}.tif", sensor="S1")
+            target = TargetEntry(name=direction, kind="edge")
+            made.add_entries([Entry(record=record, image=image, target=target, band=f"B{band}")])
+        page = words_of(sensor_page(made, "S1"))
+    assert "2 more comparisons in the tables below." in page
+    assert page.count("across − along") == 8
+
+
+def test_images_without_dates_are_in_the_order_of_their_numbers(tmp_path, edge_record):
+    with Archive(tmp_path / "undated.db") as made:
+        for at in (10, 9, 100):
+            image = ImageEntry(path=f"K3_{at}.tif", sensor="S1")
+            made.add_entries([Entry(record=edge_record, image=image)])
+        table = images_table(made.measurements(), made.rejected())
+    assert [row[1] for row in table.rows] == ["K3_9.tif", "K3_10.tif", "K3_100.tif"]
 
 
 @pytest.mark.usefixtures("undrawn")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from acutance.archive.comparison_margin import MARGIN
 from acutance.archive.comparisons import compare_groups
+from acutance.archive.counted import counted
 from acutance.curves import MAIN_NUMBERS
 from acutance.curves.metric_words import METRIC_WORDS
 from acutance.errors import OptionError
@@ -27,7 +28,7 @@ _COMMON = {
     "means": "means",
 }  # fmt: skip
 _MAX_SENTENCES = 6
-"""More pairs of methods are in the tables only."""
+"""More pairs of methods, or bands, are in the tables only."""
 
 
 @dataclass(frozen=True)
@@ -50,14 +51,20 @@ class SensorComparisons:
 
     @property
     def sentences(self) -> list[str]:
-        """The answers of the drawn metric, of three methods or more their scatter."""
+        """The answers of the drawn metric, of three methods or more their scatter.
+
+        Of many the first, and how many more the tables have.
+        """
         lines = []
         for by_metric in self.found.values():
             main = by_metric[self.metric]
             several = {one.of for one in main.scatters}
             lines += [one.sentence for one in main.differences if one.of not in several]
             lines += [one.sentence for one in main.scatters]
-        return [with_minus(self.without_sensor(line)) for line in lines[:_MAX_SENTENCES]]
+        found = [with_minus(self.without_sensor(line)) for line in lines[:_MAX_SENTENCES]]
+        if left := len(lines) - len(found):
+            found.append(f"{counted(left, 'more comparison')} in the tables below.")
+        return found
 
     def without_sensor(self, text: str) -> str:
         """A text that begins with the sensor, without it."""

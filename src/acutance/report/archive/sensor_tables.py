@@ -12,9 +12,11 @@ import numpy as np
 from acutance.archive.columns import Columns
 from acutance.archive.dates import day_or_minute
 from acutance.archive.elsewhere import elsewhere
+from acutance.archive.natural_order import natural_key
 from acutance.archive.requirement_answers import Answer, SpecificationCheck
 from acutance.archive.tables_by import MeasurementTable, table_by
 from acutance.archive.trends import Trend
+from acutance.archive.trends.series import date_of
 from acutance.archive.trends.words import unsought_words
 from acutance.curves import MAIN_NUMBERS
 from acutance.curves.metric_words import METRIC_WORDS, metric_words
@@ -74,8 +76,9 @@ def _span(days: tuple[date, ...]) -> str:
 def _changes(trend: Trend) -> list[str]:
     found = [f"{one.date} {step_words(one)}" for one in trend.changes]
     found += [f"{one.date} {one.name} {step_words(one)}" for one in trend.events]
+    unseen = [f"{date_of(one.year)} {one.name}: no image shows it" for one in trend.unseen_events]
     none = unsought_words(trend) or f"none found ({1 - trend.step_probability:.2f})"
-    return found or [none]
+    return [*(found or [none]), *unseen]
 
 
 def specification_table(check: SpecificationCheck) -> Table:
@@ -164,9 +167,9 @@ def images_table(rows: Columns, rejected: Columns) -> Table:
     )  # fmt: skip
 
 
-def _by_date(image: dict[str, Any]) -> tuple[bool, Any, str]:
+def _by_date(image: dict[str, Any]) -> tuple[Any, ...]:
     acquired, name = image["what"]
-    return bool(np.isnat(acquired)), acquired.astype(np.int64), name
+    return bool(np.isnat(acquired)), acquired.astype(np.int64), natural_key(name)
 
 
 def rejected_table(rejected: Columns) -> Table | None:

@@ -12,6 +12,7 @@ from acutance.curves.grid import Floats
 from acutance.curves.metric_words import METRIC_WORDS
 from acutance.report.archive.dates import axis_days, date_axis, day_on_axis
 from acutance.report.archive.wording import step_words
+from acutance.report.labels import shorten_name
 from acutance.report.paper import BLUE, FAINT, GREEN, INK, ORANGE, VERMILION, new_page, styled
 
 if TYPE_CHECKING:
@@ -36,6 +37,9 @@ _LIMIT_REACH = 1.0
 _LABEL_PT = 8.5
 _LABEL_STEP = 0.045
 """Labels of limits are apart by this part of the axis."""
+_EVENT_STEP = 0.025
+"""Names of events that are nearer, as a part of the axis, are written as one."""
+_EVENT_LENGTH = 40
 _LEGEND_BESIDE = 1.1
 """Where the legend begins, in widths of the axes, with the labels of limits before it."""
 
@@ -178,15 +182,28 @@ def _draw_changes(axes: Axes, trend: Trend) -> None:
     """Steps as the days between which they lie, events as lines, each with its words."""
     for change in trend.changes:
         _draw_step(axes, change)
-    top = axes.get_xaxis_transform()
+    days: dict[float, list[str]] = {}
     for event in trend.events:
-        day = day_on_axis(event.date)
+        days.setdefault(day_on_axis(event.date), []).append(event.name)
+    for day in days:
         axes.axvline(day, color=GREEN, linewidth=1.1, linestyle="-.")
+    first, last = axes.get_xlim()
+    for day, name in _labels(days, _EVENT_STEP * (last - first)).items():
         axes.text(
-            day, 0.02, f" {event.name}", transform=top, rotation=90,
+            day, 0.02, f" {name}", transform=axes.get_xaxis_transform(), rotation=90,
             ha="right", va="bottom", fontsize=8.5, color=GREEN,
             bbox={"facecolor": "white", "alpha": 0.75, "linewidth": 0, "pad": 1.0},
         )  # fmt: skip
+
+
+def _labels(days: dict[float, list[str]], room: float) -> dict[float, str]:
+    """Names of events by the day that they stand at; those without room for each are one label."""
+    found: dict[float, list[str]] = {}
+    for day in sorted(days):
+        before = next(reversed(found), None)
+        place = day if before is None or day - before >= room else before
+        found.setdefault(place, []).extend(days[day])
+    return {day: shorten_name(", ".join(names), _EVENT_LENGTH) for day, names in found.items()}
 
 
 def _draw_step(axes: Axes, change: Change) -> None:
