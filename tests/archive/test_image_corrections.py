@@ -311,6 +311,9 @@ def test_all_faults_of_a_file_are_named(tmp_path: Any) -> None:
     table.write_text("image,sensor\n")
     with pytest.raises(OptionError, match="are empty"):
         read_correction_file(table)
+    table.write_text("image;gsd_m\n0.tif;0,7\n")
+    with pytest.raises(OptionError, match="save it with commas between columns"):
+        read_correction_file(table)
     with pytest.raises(OptionError, match="cannot be read"):
         read_correction_file(tmp_path / "none.csv")
     (tmp_path / "bad.json").write_text("[1]")

@@ -80,6 +80,7 @@ def correct(
     from acutance.archive import Archive, ImageCorrection
     from acutance.archive.counted import counted
     from acutance.archive.exchange.correction_files import read_correction_file
+    from acutance.archive.natural_order import natural_key
     from acutance.report import json_text
 
     values = {
@@ -104,7 +105,7 @@ def correct(
                     "images": [one.to_dict() for one in found]}  # fmt: skip
         typer.echo(json_text(document))
     else:
-        for one in found:
+        for one in sorted(found, key=lambda one: natural_key(one.image)):
             typer.echo(one.summary)
         typer.echo(f"{counted(len(found), 'image')} {'would be ' if dry_run else ''}corrected")
     other = sum(one.other_gsd for one in found)

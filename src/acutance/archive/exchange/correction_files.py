@@ -80,6 +80,12 @@ def _json_rows(text: str) -> Iterator[tuple[str, dict[str, Any]]]:
 
 def _csv_rows(text: str) -> Iterator[tuple[str, dict[str, Any]]]:
     reader = csv.DictReader(io.StringIO(text, newline=""), restkey="beyond the header")
+    header = list(reader.fieldnames or ())
+    if len(header) == 1 and (";" in header[0] or "\t" in header[0]):
+        raise ValueError(
+            "its columns are not divided by commas: save it with commas between columns, and "
+            "points in decimals"
+        )
     for row in reader:
         cells = {key.strip(): text for key, one in row.items() if (text := _stripped(one))}
         if cells:
