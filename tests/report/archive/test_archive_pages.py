@@ -164,6 +164,18 @@ def test_steps_events_and_limits_are_drawn_where_they_are():
     assert 0.25 in levels
 
 
+@pytest.mark.parametrize(("years", "beside"), [(3.0, ""), (0.5, "2023"), (0.01, "2023-Mar")])
+def test_a_drawing_has_the_year_of_its_images(years, beside):
+    """From spring to autumn no tick is a January, which has the year."""
+    series = series_of()
+    short = replace(series, when=2023.17 + years * (series.when - 2023) / 3)
+    figure = trend_figure(fit_trend(short))
+    figure.draw_without_rendering()
+    axis = figure.axes[0].xaxis
+    assert axis.get_offset_text().get_text() == beside
+    assert axis.get_offset_text().get_window_extent().y0 >= 0
+
+
 def test_names_of_events_stay_in_the_drawing_and_apart():
     long = "cold restart of the focal plane, its heaters and everything else that was on that day"
     events = [Event("2023-09-01", long), Event("2024-05-01", "heater"),
