@@ -69,6 +69,23 @@ def test_a_stated_event_is_a_step_without_a_search(series_of: Make) -> None:
     assert after.value - before.value == pytest.approx(effect.size.value, abs=0.002)
 
 
+def test_events_without_an_image_between_them_are_said_to_be_seen_together(
+    series_of: Make,
+) -> None:
+    made = series_of(step=0.08)
+    before, after = (made.when[(made.when > 2022.5) == one] for one in (False, True))
+    apart = 0.4 * (after.min() - before.max())
+    first, second = (Event(date_of(before.max() + apart * part), name)
+                     for part, name in ((1.0, "heater"), (1.5, "focus")))  # fmt: skip
+    assert first.year > before.max()
+    trend = fit_trend(made, [first, second])
+    (note,) = trend.notes
+    assert note.startswith("No image lies between heater and focus: ")
+    assert all(event.size.interval()[0] < 0.0 for event in trend.events)
+    assert not fit_trend(made, [first]).notes
+    assert not fit_trend(made, [first, Event(date_of(2023.5), "clock")]).notes
+
+
 def test_an_event_may_change_the_drift(series_of: Make) -> None:
     made = series_of(scatter=0.005)
     turned = made.value - 0.16 * 0.05 * np.maximum(made.when - 2022.5, 0)

@@ -65,8 +65,8 @@ def fit_trend(series: Series, events: Sequence[Event] = ()) -> Trend:
     return Trend(
         metric=series.metric, name=series.name, measurements=dated.size, images=images,
         posterior=posterior, bad_days=_bad_days(images, posterior, series),
-        notes=(*series.notes, *_left_out(series, dated), *_outside(images, events), *notes,
-               *_targets(effects, posterior)),
+        notes=(*series.notes, *_left_out(series, dated), *_outside(images, events),
+               *_together(images, ordered), *notes, *_targets(effects, posterior)),
     )  # fmt: skip
 
 
@@ -120,6 +120,18 @@ def _outside(images: ImageMeans, events: Sequence[Event]) -> tuple[str, ...]:
     if not names:
         return ()
     return (f"No image shows what {', '.join(names)} did: all are on one side of it.",)
+
+
+def _together(images: ImageMeans, events: Sequence[Event]) -> tuple[str, ...]:
+    """Events without an image between them: nothing shows which of them did what."""
+    names: dict[int, list[str]] = {}
+    for event in events:
+        names.setdefault(int(np.searchsorted(images.when, event.year)), []).append(event.name)
+    return tuple(
+        f"No image lies between {' and '.join(those)}: only what they changed together is seen, "
+        "and each alone has a wide interval."
+        for place, those in names.items() if len(those) > 1 and 0 < place < images.size
+    )  # fmt: skip
 
 
 def _bad_days(images: ImageMeans, posterior: TrendPosterior, series: Series) -> tuple[BadDay, ...]:
