@@ -402,6 +402,18 @@ def test_comparisons_of_many_bands_are_counted_where_they_are_not_all_said(tmp_p
     assert page.count("across − along") == 8
 
 
+def test_of_very_many_images_the_latest_are_listed(tmp_path, edge_record):
+    days = [BEGIN + timedelta(days=at) for at in range(403)]
+    with Archive(tmp_path / "many.db") as made:
+        made.add_entries(
+            Entry(record=edge_record, image=ImageEntry(path=f"{at}.tif", acquired=day))
+            for at, day in enumerate([*days, None, None])
+        )
+        table = images_table(made.measurements(), made.rejected())
+    assert table.notes == ("The latest 400; 5 more are not listed.",)
+    assert [row[1] for row in table.rows[:1] + table.rows[-2:]] == ["5.tif", "403.tif", "404.tif"]
+
+
 def test_images_without_dates_are_in_the_order_of_their_numbers(tmp_path, edge_record):
     with Archive(tmp_path / "undated.db") as made:
         for at in (10, 9, 100):

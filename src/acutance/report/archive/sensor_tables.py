@@ -150,7 +150,11 @@ def images_table(rows: Columns, rejected: Columns) -> Table:
             elif elsewhere(part["values"][at]) is None:
                 one["rejected"] += 1
     listed = []
-    for one in sorted(images.values(), key=_by_date)[:_MAX_IMAGES]:
+    # Of very many the latest are of interest; those without a date stand last.
+    in_order = sorted(images.values(), key=_by_date)
+    dated = sum(not np.isnat(one["what"][0]) for one in in_order)
+    first = min(max(0, len(in_order) - _MAX_IMAGES), dated)
+    for one in in_order[first : first + _MAX_IMAGES]:
         acquired, name = one["what"]
         counts = Counter(one["ids"].values())
         words = ", ".join(f"{counts[word]} {word}" for word in _VERDICTS if counts[word])
@@ -160,7 +164,7 @@ def images_table(rows: Columns, rejected: Columns) -> Table:
             str(one["rejected"]),
         ))  # fmt: skip
     left = len(images) - len(listed)
-    notes = (f"The first {len(listed)}; {left} more are not listed.",) if left else ()
+    notes = (f"The latest {len(listed)}; {left} more are not listed.",) if left else ()
     return Table(
         ("Acquired (UTC)", "Image", "Measured", "Verdicts", "Rejected"), tuple(listed), "llrlr",
         title="Images", notes=notes, page_only=True,
