@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from acutance.archive.trends.images import ImageMeans
 from acutance.archive.trends.normal_mixture import NormalMixture
 from acutance.archive.trends.posterior import TrendPosterior
 from acutance.archive.trends.relative import is_told_from_zero
@@ -175,10 +176,13 @@ def _probability(posterior: TrendPosterior, since: float, until: float) -> float
     return total
 
 
-def event_effects(posterior: TrendPosterior) -> tuple[EventEffect, ...]:
-    """The step, and the change of the drift, at every stated event."""
+def event_effects(posterior: TrendPosterior, images: ImageMeans) -> tuple[EventEffect, ...]:
+    """The step, and the change of the drift, at every stated event that images show."""
     found, at = [], 4
     for event in posterior.design.events:
+        if not images.surround(event.year):
+            at += 1 + event.changes_drift
+            continue
         size = posterior.coefficient(at).estimate()
         relative = _relative_size(posterior, at, np.full(posterior.share.size, event.year))
         slopes: tuple[Estimate, ...] = ()

@@ -115,8 +115,7 @@ def _targets(effects: TargetEffects, posterior: TrendPosterior) -> tuple[str, ..
 
 def _outside(images: ImageMeans, events: Sequence[Event]) -> tuple[str, ...]:
     """Events before the first or after the last image: nothing shows what they did."""
-    names = [event.name for event in events
-             if not images.when[0] < event.year <= images.when[-1]]  # fmt: skip
+    names = [event.name for event in events if not images.surround(event.year)]
     if not names:
         return ()
     return (f"No image shows what {', '.join(names)} did: all are on one side of it.",)

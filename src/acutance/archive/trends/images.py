@@ -74,6 +74,10 @@ class ImageMeans(ShortRepr):
         """Whether a place stands for several images."""
         return self.images > self.size
 
+    def surround(self, year: float) -> bool:
+        """Whether there are images before a date and from it on, which show what it changed."""
+        return bool(self.when[0] < year <= self.when[-1])
+
     def to_dict(self) -> dict[str, Any]:
         """All fields, arrays as lists."""
         found = {one.name: getattr(self, one.name) for one in fields(self)}

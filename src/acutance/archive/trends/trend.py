@@ -21,7 +21,7 @@ from acutance.archive.trends.normal_mixture import NormalMixture
 from acutance.archive.trends.posterior import TrendPosterior
 from acutance.archive.trends.relative import is_told_from_zero
 from acutance.archive.trends.scatter import with_scatter
-from acutance.archive.trends.series import Event, date_of, decimal_year
+from acutance.archive.trends.series import date_of, decimal_year
 from acutance.archive.trends.tuned import MIN_IMAGES_BY_STEPS
 from acutance.archive.trends.words import trend_text
 from acutance.arguments import require_finite, require_flags, require_floats, require_numbers
@@ -183,18 +183,7 @@ class Trend(ShortRepr):
     @cached_property
     def events(self) -> tuple[EventEffect, ...]:
         """What changed at the stated events, of those with images before and after them."""
-        effects, stated = event_effects(self._drifting), self.posterior.design.events
-        return tuple(one for one, event in zip(effects, stated, strict=True)
-                     if self._has_images_around(event))  # fmt: skip
-
-    @property
-    def unseen_events(self) -> tuple[Event, ...]:
-        """Stated events that all images are on one side of: none shows what they changed."""
-        stated = self.posterior.design.events
-        return tuple(event for event in stated if not self._has_images_around(event))
-
-    def _has_images_around(self, event: Event) -> bool:
-        return bool(self.images.when[0] < event.year <= self.images.when[-1])
+        return event_effects(self._drifting, self.images)
 
     @property
     def drift_event(self) -> EventEffect | None:

@@ -76,7 +76,10 @@ def _span(days: tuple[date, ...]) -> str:
 def _changes(trend: Trend) -> list[str]:
     found = [f"{one.date} {step_words(one)}" for one in trend.changes]
     found += [f"{one.date} {one.name} {step_words(one)}" for one in trend.events]
-    unseen = [f"{date_of(one.year)} {one.name}: no image shows it" for one in trend.unseen_events]
+    unseen = [
+        f"{date_of(one.year)} {one.name}: no image shows it"
+        for one in trend.posterior.design.events if not trend.images.surround(one.year)
+    ]  # fmt: skip
     none = unsought_words(trend) or f"none found ({1 - trend.step_probability:.2f})"
     return [*(found or [none]), *unseen]
 
