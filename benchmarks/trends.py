@@ -62,6 +62,7 @@ STEADY = {
     "drift 2 %, 120 images": Case(drift=0.02, images=120),
     "drift 1 %": Case(drift=0.01),
     "drift 5 %": Case(drift=0.05),
+    "drift 1 %, 15 years, scatter 3 %": Case(years=15.0, drift=0.01, scatter=0.03),
     "drift -25 %, one year, scatter 2 %": Case(years=1.0, scatter=0.02, drift=-0.25),
     "drift 2 %, scatter 2 %": Case(drift=0.02, scatter=0.02),
     "drift 2 %, Student-t scatter (3)": Case(drift=0.02, tails=3.0),

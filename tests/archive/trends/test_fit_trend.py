@@ -58,6 +58,17 @@ def test_steady_and_drifting_series_have_no_step(series_of: Make) -> None:
         assert sum(map(len, found)) <= 1
 
 
+def test_a_step_that_may_go_up_or_down_is_none_to_be_reported(series_of: Make) -> None:
+    """Over many years small steps are probable beforehand, and no image excludes them."""
+    trends = [fit_trend(series_of(seed, years=45.0, drift=-0.004, scatter=0.03))
+              for seed in range(8)]  # fmt: skip
+    probable = [trend for trend in trends if trend.step_probability >= 0.3]
+    assert len(probable) > 3
+    quiet = [trend for trend in probable if not trend.changes]
+    assert len(quiet) >= len(probable) - 1
+    assert all("cannot tell a drift from a step" in trend.summary() for trend in quiet)
+
+
 def test_a_stated_event_is_a_step_without_a_search(series_of: Make) -> None:
     made = series_of(step=0.08)
     trend = fit_trend(made, [Event(date_of(2022.5), "refocus")])

@@ -14,7 +14,7 @@ from acutance.archive.trends.normal_mixture import NormalMixture
 from acutance.archive.trends.posterior import TrendPosterior
 from acutance.archive.trends.relative import is_told_from_zero
 from acutance.archive.trends.series import date_of
-from acutance.archive.trends.tuned import REPORTED_STEP
+from acutance.archive.trends.tuned import REPORTED_SIGN, REPORTED_SPAN, REPORTED_STEP
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
 
@@ -100,7 +100,7 @@ class EventEffect:
         }
 
 
-def found_changes(posterior: TrendPosterior) -> tuple[Change, ...]:
+def found_changes(posterior: TrendPosterior, images: ImageMeans) -> tuple[Change, ...]:
     """The steps that are probable enough to be reported, in the order of time."""
     probability = posterior.step_probability
     if probability[1:].sum() < REPORTED_STEP:
@@ -111,7 +111,23 @@ def found_changes(posterior: TrendPosterior) -> tuple[Change, ...]:
         return ()
     those = posterior.those(with_them)
     found = (_change(posterior, those, place) for place in range(count))
-    return tuple(change for change in found if change.probability >= REPORTED_STEP)
+    days = (date_of(float(images.when[-1])) - date_of(float(images.when[0]))).days
+    return tuple(change for change in found if _is_reported(change, days))
+
+
+def _is_reported(change: Change, days: float) -> bool:
+    """Whether a step is probable, and it is known roughly when it was, or that it goes up or down.
+
+    Parameters
+    ----------
+    change : Change
+    days : float
+        From the first to the last image.
+    """
+    above = change.size.probability_above(0.0)
+    is_placed = (change.until - change.since).days <= REPORTED_SPAN * days
+    is_signed = max(above, 1 - above) >= REPORTED_SIGN
+    return change.probability >= REPORTED_STEP and (is_placed or is_signed)
 
 
 def _change(posterior: TrendPosterior, those: TrendPosterior, place: int) -> Change:

@@ -178,7 +178,7 @@ class Trend(ShortRepr):
     @cached_property
     def changes(self) -> tuple[Change, ...]:
         """Steps at unknown dates, in the order of time; those that are probable enough."""
-        return found_changes(self.posterior)
+        return found_changes(self.posterior, self.images)
 
     @cached_property
     def events(self) -> tuple[EventEffect, ...]:
