@@ -54,15 +54,14 @@ class Crosstalk:
 
 
 @dataclass(frozen=True)
-class Moffat:
-    """A profile ``(1 + r^2 / a^2)^-b``: a core with the wings of turbulence."""
+class Secant:
+    """A spot ``1 / cosh(r / a)``: round at its middle, far out an exponential."""
 
     radius_px: float
-    power: float
 
     def otf(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
-        r = np.linspace(0.0, 40.0, 8001)
-        light = r * (1 + (r / self.radius_px) ** 2) ** -self.power
+        r = np.linspace(0.0, 40.0 * self.radius_px, 8001)
+        light = r / np.cosh(r / self.radius_px)
         freq_cpp = np.linspace(0.0, 4.0, 201)
         found = j0(2 * np.pi * freq_cpp[:, None] * r) @ light
         return np.asarray(np.interp(np.hypot(u, v), freq_cpp, found / found[0]))
@@ -120,7 +119,7 @@ SHAPES: dict[str, Callable[[np.random.Generator], list[Block]]] = {
     "sinusoidal vibration": lambda rng: [*_blur(rng), Jitter(rng.uniform(0.2, 0.5))],
     "optical low-pass filter": lambda rng: [*_blur(rng), FourSpots(rng.uniform(0.15, 0.33))],
     "crosstalk": lambda rng: [*_blur(rng), Crosstalk(rng.uniform(0.03, 0.12))],
-    "Moffat profile": lambda rng: [Detector(), Moffat(rng.uniform(0.5, 1.0), rng.uniform(1.8, 4))],
+    "secant spot": lambda rng: [Detector(), Secant(rng.uniform(0.2, 0.5))],
     "double image": lambda rng: [*_blur(rng), SecondImage(0.3, rng.uniform(0.3, 0.9), False)],
     "exponential diffusion": lambda rng: [*_blur(rng), Lorentz(rng.uniform(0.1, 0.3))],
     "loss of transfer": lambda rng: [*_blur(rng), TransferLoss(rng.uniform(0.15, 0.4))],

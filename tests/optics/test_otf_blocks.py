@@ -21,6 +21,7 @@ from acutance.optics import (
     Gaussian,
     Halo,
     Jitter,
+    Moffat,
     Resampling,
     Rescaled,
     Sensor,
@@ -50,6 +51,8 @@ BLOCKS = [
     Gaussian(0.4, 0.6),
     Halo(0.1, 2.5),
     Jitter(0.2),
+    Moffat(0.6),
+    Moffat(0.6, 1.5),
     Resampling("nearest"),
     Resampling("bilinear"),
     Resampling("cubic", -0.75),
@@ -303,6 +306,27 @@ def test_atmosphere():
     assert Turbulence(4.0).otf(np.array([4.0]), ZERO[:1]) == pytest.approx(math.exp(-3.44))
     aerosol = Aerosol(0.3, 0.1).otf(np.array([0.05, 0.1, 0.5]), np.zeros(3))
     np.testing.assert_allclose(aerosol, np.exp([-0.075, -0.3, -0.3]))
+
+
+@pytest.mark.parametrize("exponent", [1.5, 2.0, 4.765])
+def test_moffat_is_the_transform_of_a_power(exponent):
+    # Light along a line through the plane falls as (1 + x^2)^(1/2 - b).
+    peak = math.gamma(exponent - 0.5) / math.gamma(exponent - 1) / math.sqrt(math.pi) / 0.6
+    places = np.linspace(-4, 4, 41)
+    found = Sensor([Moffat(0.6, exponent)]).profile(0.0).lsf(places)
+    np.testing.assert_allclose(
+        found, peak * (1 + (places / 0.6) ** 2) ** (0.5 - exponent), atol=1e-6
+    )
+
+
+def test_moffat_lies_between_an_exponential_and_a_gaussian():
+    np.testing.assert_allclose(Moffat(0.3, 1.5).otf(F, ZERO), np.exp(-0.6 * math.pi * np.abs(F)))
+    sigma_px = 0.4 / math.sqrt(2 * 20)
+    np.testing.assert_allclose(
+        Moffat(0.4, 20).otf(F, ZERO), Gaussian(sigma_px).otf(F, ZERO), atol=0.02
+    )
+    with pytest.raises(ModelError, match=r"exponent is 1\.2, it has to be finite, at least 1\.5"):
+        Moffat(0.4, 1.2)
 
 
 @pytest.mark.parametrize(

@@ -29,6 +29,7 @@ EVERY_BLOCK = [
     optics.WavefrontError(0.05, 0.2, 1.2),
     optics.Aerosol(0.2, 0.01),
     optics.Turbulence(40.0),
+    optics.Moffat(0.2, 3.0),
     optics.Detector(1.0, 0.9),
     optics.ChargeDiffusion(0.3),
     optics.Smear(0.25, "along"),

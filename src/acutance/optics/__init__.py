@@ -9,7 +9,7 @@ from acutance.optics.aperture import (
     Halo,
     WavefrontError,
 )
-from acutance.optics.atmosphere import Aerosol, Turbulence
+from acutance.optics.atmosphere import Aerosol, Moffat, Turbulence
 from acutance.optics.block import Block
 from acutance.optics.budget import Budget, BudgetRow, budget
 from acutance.optics.catalogue import BLOCKS, BlockKind, describe_block
@@ -51,6 +51,7 @@ __all__ = [
     "GroundCurves",
     "Halo",
     "Jitter",
+    "Moffat",
     "Profile",
     "RasterPsf",
     "Resampling",

@@ -15,7 +15,7 @@ from acutance.optics.aperture import (
     Halo,
     WavefrontError,
 )
-from acutance.optics.atmosphere import Aerosol, Turbulence
+from acutance.optics.atmosphere import Aerosol, Moffat, Turbulence
 from acutance.optics.block import Block
 from acutance.optics.detector import ChargeDiffusion, Detector
 from acutance.optics.electronics import Butterworth, Exponential
@@ -84,6 +84,11 @@ BLOCKS: dict[str, BlockKind] = {
         "Kopeika, A System Engineering Approach to Imaging, 1998",
     ),
     "Turbulence": BlockKind(Turbulence, "exp(-3.44 (f / f_0)^(5/3))", "Fried, JOSA 56, 1372, 1966"),
+    "Moffat": BlockKind(
+        Moffat,
+        "2 (x / 2)^(b - 1) K_(b - 1)(x) / Gamma(b - 1), x = 2 pi a f",
+        "transform of (1 + (r / a)^2)^-b; Moffat, Astron. Astrophys. 3, 455, 1969",
+    ),
     "Detector": BlockKind(Detector, "sinc(w u) sinc(h v)", f"{_GENERIC}, eq. 2.2"),
     "ChargeDiffusion": BlockKind(
         ChargeDiffusion,

@@ -15,7 +15,9 @@ family has one cause of blur that a Gaussian through a pixel does not describe:
   a small part of it is;
 - "processed": compensated on the ground, then interpolated;
 - "scatter": a halo behind a telescope, or one that falls like an exponential;
-- "aberrated": a telescope out of alignment: coma and other aberrations of low order.
+- "aberrated": a telescope out of alignment: coma and other aberrations of low order;
+- "peaked": a blur that falls more slowly than a Gaussian from its middle on, as that of the air,
+  of charge that spreads deep in a detector, or of a mount that is seldom still.
 """
 
 from __future__ import annotations
@@ -38,6 +40,7 @@ from acutance.optics.aperture import (
     Halo,
     WavefrontError,
 )
+from acutance.optics.atmosphere import Moffat, Turbulence
 from acutance.optics.block import Block
 from acutance.optics.detector import ChargeDiffusion, Detector
 from acutance.optics.electronics import Exponential
@@ -54,6 +57,11 @@ _SCATTERED = 0.02, 0.15
 _HALO_PX, _DECAY_PX = (1.5, 5.0), (0.8, 4.0)
 """Standard deviation of Gaussian halos, and over what exponential ones fall: of those a Gaussian of
 1.4 to 7 px is as wide."""
+_PEAK_PX, _CLOSE_HALO_PX = (0.12, 0.6), (0.5, 1.5)
+"""Over what an exponential blur falls, and standard deviation of a halo next to its core."""
+_SPOT_PX, _FRIED_CPP = (0.3, 1.5), (0.8, 5.0)
+"""Full width at half maximum of a spot that falls like a power, and frequency of turbulence: where
+it takes 5 to 80 % of the MTF at Nyquist."""
 _BY_HAND = 0.05, 0.8
 """Strength of kernels set by hand: light ones are as common as heavy ones, by their logarithm."""
 _LEAST_SUM = 0.01
@@ -134,6 +142,24 @@ def _scatter(rng: np.random.Generator) -> list[Block]:
     if is_plain or rng.random() < 0.6:
         return [*blocks, ExponentialHalo(fraction, math.exp(rng.uniform(*np.log(_DECAY_PX))))]
     return [*blocks, Halo(fraction, rng.uniform(*_HALO_PX))]
+
+
+def _peaked(rng: np.random.Generator) -> list[Block]:
+    if rng.random() < 0.3:
+        blocks = _telescope(rng)
+    else:
+        blocks = [Gaussian(rng.uniform(0.0, 0.4)), Detector(rng.uniform(0.85, 1.0))]
+    kind = rng.integers(4)
+    if kind == 0:
+        decay_px = math.exp(rng.uniform(*np.log(_PEAK_PX)))
+        return [*blocks, ExponentialHalo(rng.uniform(0.3, 1.0), decay_px)]
+    if kind == 1:
+        return [*blocks, Halo(rng.uniform(0.1, 0.5), rng.uniform(*_CLOSE_HALO_PX))]
+    if kind == 2:
+        exponent = rng.uniform(2.0, 5.0)
+        half_px = 0.5 * math.exp(rng.uniform(*np.log(_SPOT_PX)))
+        return [*blocks, Moffat(half_px / math.sqrt(2 ** (1 / exponent) - 1), exponent)]
+    return [*blocks, Turbulence(math.exp(rng.uniform(*np.log(_FRIED_CPP))))]
 
 
 def _trail(rng: np.random.Generator) -> list[Block]:
@@ -223,6 +249,7 @@ FAMILIES: dict[str, Callable[[np.random.Generator], list[Block]]] = {
     "processed": _processed,
     "scatter": _scatter,
     "aberrated": _aberrated,
+    "peaked": _peaked,
 }
 """How to draw the blocks of a sensor of each family."""
 UNEVEN_FAMILIES: Final = ("trail", "shifted", "processed", "aberrated")

@@ -7,7 +7,12 @@ import acutance as ac
 from acutance import optics, simulate
 from acutance.optics import draw_sensor
 from acutance.targets.straight import among_sensors
-from acutance.targets.straight.learn_lsf import departure, draw_density, write_density
+from acutance.targets.straight.learn_lsf import (
+    departure,
+    draw_density,
+    with_more,
+    write_density,
+)
 from acutance.targets.straight.sensor_density import SensorFamily, Sensors, drawn_sensors
 from acutance.targets.straight.tuned import FAMILY_WEIGHTS, KERNEL_SCALES, OTHER_WEIGHT
 
@@ -123,6 +128,21 @@ def test_what_was_drawn_is_kept(tmp_path):
     assert np.abs(density["trail"][:, :-1]).max() > 0.03
 
 
+def test_another_family_is_added_in_the_same_coordinates():
+    kept = draw_density({"halo": 60, "smear": 30}, 3)
+    found = with_more(kept, "peaked", 20, 4)
+    assert set(found) == {*kept, "peaked"}
+    assert all(np.array_equal(found[name], kept[name]) for name in kept)
+    rows, widths = found["peaked"][:, :-1], found["peaked"][:, -1]
+    assert rows.shape == (20, kept["basis"].shape[1])
+    assert np.all(np.diff(widths) >= 0)
+    rng = np.random.default_rng((4,))
+    drawn = [departure(draw_sensor("peaked", rng)) for _ in range(20)]
+    narrowest = min(drawn, key=lambda one: one.width_px)
+    assert widths[0] == pytest.approx(np.log(narrowest.width_px))
+    assert rows[0] == pytest.approx(narrowest.coefficients @ kept["basis"])
+
+
 @pytest.mark.parametrize("family", optics.FAMILIES)
 def test_departures_of_new_sensors_lie_in_the_coordinates(family):
     basis = drawn_sensors().basis
@@ -144,6 +164,23 @@ def test_so_do_departures_of_the_reference_systems(system):
     basis = drawn_sensors().basis
     found = departure(simulate.reference_systems()[system]).coefficients
     assert np.linalg.norm(found - basis @ (basis.T @ found)) < 7e-4
+
+
+def test_edges_behind_an_exponential_blur_are_not_taken_for_softer():
+    """Without a family of such sensors the RER was 1.5 deviations low in the mean, and 75 % of the
+    intervals held."""
+    z = []
+    for draw in range(40):
+        rng = np.random.default_rng([14, draw])
+        blur = optics.ExponentialHalo(1.0, rng.uniform(0.25, 0.5))
+        image, truth = simulate.edge(
+            ac.Sensor([blur, optics.Detector()]), angle_deg=rng.uniform(3, 12), shape=(50, 50),
+            snr=100, offset_px=rng.uniform(-0.5, 0.5), rng=rng,
+        )  # fmt: skip
+        found = ac.measure_edge(image)
+        z.append((found.rer.value - truth.rer.value) / found.rer.std)
+    assert np.mean(z) > -1
+    assert np.mean(np.abs(z) < 1.96) > 0.88
 
 
 SENSORS = {

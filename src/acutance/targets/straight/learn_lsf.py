@@ -30,6 +30,7 @@ __all__ = [
     "draw_density",
     "learn",
     "principal_directions",
+    "with_more",
     "write",
     "write_density",
 ]
@@ -47,6 +48,7 @@ DENSITY_COUNTS = {
     "processed": 1400,
     "scatter": 1200,
     "aberrated": 500,
+    "peaked": 800,
 }
 """Sensors of the density: more of families that vary in more ways. "plain" is a Gaussian blur and a
 detector, nothing else."""
@@ -166,11 +168,7 @@ def draw_density(counts: Mapping[str, int], seed: int) -> dict[str, Floats]:
     """
     drawn, widths = {}, {}
     for number, (family, count) in enumerate(counts.items()):
-        rng = np.random.default_rng((seed, number))
-        found = [departure(_drawn(family, rng)) for _ in range(count)]
-        rows = np.array([one.coefficients for one in found])
-        order = np.argsort([one.width_px for one in found])
-        drawn[family], widths[family] = rows[order], np.log([found[k].width_px for k in order])
+        drawn[family], widths[family] = _departures(family, count, (seed, number))
     # Small departures are as interesting as large ones.
     even = [
         rows / max(float(np.linalg.norm(rows, axis=1).mean()), _SMALLEST) for rows in drawn.values()
@@ -179,6 +177,29 @@ def draw_density(counts: Mapping[str, int], seed: int) -> dict[str, Floats]:
     basis = np.linalg.svd(both, full_matrices=False)[2][:_COORDINATES].T
     columns = {name: np.column_stack([rows @ basis, widths[name]]) for name, rows in drawn.items()}
     return {"basis": basis, **columns}
+
+
+def with_more(kept: Mapping[str, Floats], family: str, count: int, seed: int) -> dict[str, Floats]:
+    """A density with a family that it has not, or another draw of one, in the basis it has.
+
+    Parameters
+    ----------
+    kept : dict of str to array
+        As `draw_density` gives it.
+    family : str
+    count, seed : int
+    """
+    rows, widths = _departures(family, count, (seed,))
+    return {**kept, family: np.column_stack([rows @ kept["basis"], widths])}
+
+
+def _departures(family: str, count: int, seed: tuple[int, ...]) -> tuple[Floats, Floats]:
+    """Coefficients of so many sensors, (n, SIZE + 1), and the logarithms of their widths, (n,),
+    ascending."""
+    rng = np.random.default_rng(seed)
+    found = [departure(_drawn(family, rng)) for _ in range(count)]
+    found.sort(key=lambda one: one.width_px)
+    return np.array([one.coefficients for one in found]), np.log([one.width_px for one in found])
 
 
 def _drawn(family: str, rng: np.random.Generator) -> Sensor:
