@@ -29,6 +29,7 @@ from acutance.optics import (
     Shift,
     Smear,
     Tdi,
+    TransferLoss,
     Turbulence,
     WavefrontError,
 )
@@ -65,6 +66,8 @@ BLOCKS = [
     Shift(0.25, 0.6, "spline"),
     Smear(1.2),
     Tdi(48, 0.02, 0.01),
+    TransferLoss(0.2),
+    TransferLoss(0.2, "across"),
     Turbulence(4.0),
     WavefrontError(0.07, 0.2, 1.2),
 ]
@@ -300,6 +303,15 @@ def test_tdi_is_the_dirichlet_kernel_of_its_stages():
         Tdi(16, drift_across_px=0.05).otf(F, ZERO), np.sin(16 * x) / (16 * np.sin(x)), rtol=1e-10
     )
     np.testing.assert_allclose(Tdi(16, phases=2).otf(ZERO, F), np.sinc(F / 2), rtol=1e-12)
+
+
+def test_charge_that_is_left_comes_whole_pixels_late():
+    late = np.arange(40)
+    wanted = np.exp(-2j * math.pi * np.outer(F, late)) @ (0.7 * 0.3**late)
+    np.testing.assert_allclose(TransferLoss(0.3).otf(ZERO, F), wanted, atol=1e-12)
+    np.testing.assert_allclose(TransferLoss(0.3).otf(F, ZERO), 1.0)
+    with pytest.raises(ModelError, match="share"):
+        TransferLoss(0.95)
 
 
 def test_atmosphere():

@@ -37,6 +37,7 @@ EVERY_BLOCK = [
     optics.Tdi(32, 0.01, 0.002, 4),
     optics.Butterworth(1.4),
     optics.Exponential(0.1, "across"),
+    optics.TransferLoss(0.1),
     optics.Resampling("bilinear"),
     optics.Resampling("lanczos"),
     optics.Shift(0.2, 0.3, "cubic", -0.75),

@@ -14,7 +14,7 @@ from acutance.optics.block import Block
 from acutance.optics.budget import Budget, BudgetRow, budget
 from acutance.optics.catalogue import BLOCKS, BlockKind, describe_block
 from acutance.optics.detector import ChargeDiffusion, Detector
-from acutance.optics.electronics import Butterworth, Exponential
+from acutance.optics.electronics import Butterworth, Exponential, TransferLoss
 from acutance.optics.metres import GroundCurves, on_the_ground, psf_on_the_ground
 from acutance.optics.motion import Jitter, Smear, Tdi
 from acutance.optics.population import FAMILIES, draw_sensor
@@ -62,6 +62,7 @@ __all__ = [
     "Shift",
     "Smear",
     "Tdi",
+    "TransferLoss",
     "Turbulence",
     "WavefrontError",
     "budget",

@@ -18,7 +18,7 @@ from acutance.optics.aperture import (
 from acutance.optics.atmosphere import Aerosol, Moffat, Turbulence
 from acutance.optics.block import Block
 from acutance.optics.detector import ChargeDiffusion, Detector
-from acutance.optics.electronics import Butterworth, Exponential
+from acutance.optics.electronics import Butterworth, Exponential, TransferLoss
 from acutance.optics.motion import Jitter, Smear, Tdi
 from acutance.optics.processing import Resampling, Rescaled, Sharpening, Shift
 
@@ -105,6 +105,11 @@ BLOCKS: dict[str, BlockKind] = {
     "Butterworth": BlockKind(Butterworth, "1 / (1 + (f / D0)^2)", f"{_GENERIC}, eq. 2.5"),
     "Exponential": BlockKind(
         Exponential, "1 / (1 + 2 pi i L u), or v", "transform of exp(-x / L) / L, x > 0"
+    ),
+    "TransferLoss": BlockKind(
+        TransferLoss,
+        "(1 - s) / (1 - s exp(-2 pi i v)), or u",
+        "transform of (1 - s) s^k at whole pixels k = 0, 1, ...",
     ),
     "Resampling": BlockKind(
         Resampling,

@@ -10,7 +10,7 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.optics.block import Axis, Transfer, along_axis, require, require_axis
 
-__all__ = ["Butterworth", "Exponential"]
+__all__ = ["Butterworth", "Exponential", "TransferLoss"]
 
 
 @dataclass(frozen=True)
@@ -59,3 +59,31 @@ class Exponential:
 
     def otf(self, u: Floats, v: Floats) -> Transfer:
         return np.asarray(1 / (1 + 2j * math.pi * self.length_px * along_axis(u, v, self.axis)))
+
+
+@dataclass(frozen=True)
+class TransferLoss:
+    """Charge that stays behind, and comes with the next pixel: traps of a CCD that ages.
+
+    Of every pixel's charge the share ``(1 - s) s^k`` arrives k pixels late (towards higher columns
+    or rows); the transform is ``(1 - s) / (1 - s exp(-2 pi i f))``. Light of a pixel moves by whole
+    pixels: above the Nyquist frequency the transfer rises again, as that of no exponential.
+
+    Parameters
+    ----------
+    share : float
+        Part s of the charge that is left, 0 to 0.9; it is late by ``s / (1 - s)`` px in the mean.
+    axis : {"across", "along"}, optional
+        Direction of the transfer.
+    """
+
+    share: float
+    axis: Axis = "along"
+
+    def __post_init__(self) -> None:
+        require(self, 0.0, 0.9, share=self.share)
+        require_axis(self, self.axis)
+
+    def otf(self, u: Floats, v: Floats) -> Transfer:
+        late = np.exp(-2j * math.pi * along_axis(u, v, self.axis))
+        return np.asarray((1 - self.share) / (1 - self.share * late))

@@ -17,7 +17,8 @@ family has one cause of blur that a Gaussian through a pixel does not describe:
 - "scatter": a halo behind a telescope, or one that falls like an exponential;
 - "aberrated": a telescope out of alignment: coma and other aberrations of low order;
 - "peaked": a blur that falls more slowly than a Gaussian from its middle on, as that of the air,
-  of charge that spreads deep in a detector, or of a mount that is seldom still.
+  of charge that spreads deep in a detector, or of a mount that is seldom still;
+- "deferred": charge that is left to the next pixel.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ from acutance.optics.aperture import (
 from acutance.optics.atmosphere import Moffat, Turbulence
 from acutance.optics.block import Block
 from acutance.optics.detector import ChargeDiffusion, Detector
-from acutance.optics.electronics import Exponential
+from acutance.optics.electronics import Exponential, TransferLoss
 from acutance.optics.interpolation import Interpolation
 from acutance.optics.motion import Smear
 from acutance.optics.processing import Resampling, Sharpening, Shift
@@ -71,7 +72,7 @@ _LEAST_SUM = 0.01
 def draw_sensor(family: str, rng: np.random.Generator) -> Sensor:
     """Draw a sensor of a family, with an MTF at Nyquist between .01 and 1.
 
-    Smear and trail act across; the others have the same blur in all directions, or nearly.
+    Smear and trails act across; the others have the same blur in all directions, or nearly.
 
     Raises
     ------
@@ -145,25 +146,41 @@ def _scatter(rng: np.random.Generator) -> list[Block]:
 
 
 def _peaked(rng: np.random.Generator) -> list[Block]:
+    kind = rng.integers(5)
     if rng.random() < 0.3:
         blocks = _telescope(rng)
+    elif kind < 2:
+        blocks = _plain(rng)
     else:
+        # What is blurred is all of the light: little else needs to be.
         blocks = [Gaussian(rng.uniform(0.0, 0.4)), Detector(rng.uniform(0.85, 1.0))]
-    kind = rng.integers(4)
-    if kind == 0:
-        decay_px = math.exp(rng.uniform(*np.log(_PEAK_PX)))
-        return [*blocks, ExponentialHalo(rng.uniform(0.3, 1.0), decay_px)]
-    if kind == 1:
-        return [*blocks, Halo(rng.uniform(0.1, 0.5), rng.uniform(*_CLOSE_HALO_PX))]
-    if kind == 2:
-        exponent = rng.uniform(2.0, 5.0)
-        half_px = 0.5 * math.exp(rng.uniform(*np.log(_SPOT_PX)))
-        return [*blocks, Moffat(half_px / math.sqrt(2 ** (1 / exponent) - 1), exponent)]
-    return [*blocks, Turbulence(math.exp(rng.uniform(*np.log(_FRIED_CPP))))]
+    return [*blocks, _PEAKED[kind](rng)]
+
+
+_PEAKED: tuple[Callable[[np.random.Generator], Block], ...] = (
+    lambda rng: Halo(rng.uniform(0.1, 0.5), rng.uniform(*_CLOSE_HALO_PX)),
+    lambda rng: ExponentialHalo(rng.uniform(0.3, 1.0), _between(_PEAK_PX, rng)),
+    lambda rng: ExponentialHalo(1.0, _between(_PEAK_PX, rng)),
+    lambda rng: Turbulence(_between(_FRIED_CPP, rng)),
+    lambda rng: _moffat(_between(_SPOT_PX, rng), rng.uniform(2.0, 5.0)),
+)
+
+
+def _between(ends: tuple[float, float], rng: np.random.Generator) -> float:
+    """A number whose logarithm is drawn evenly."""
+    return math.exp(rng.uniform(*np.log(ends)))
+
+
+def _moffat(fwhm_px: float, exponent: float) -> Moffat:
+    return Moffat(0.5 * fwhm_px / math.sqrt(2 ** (1 / exponent) - 1), exponent)
 
 
 def _trail(rng: np.random.Generator) -> list[Block]:
     return [*_plain(rng), Exponential(rng.uniform(0.1, 0.8), "across")]
+
+
+def _deferred(rng: np.random.Generator) -> list[Block]:
+    return [*_plain(rng), TransferLoss(rng.uniform(0.03, 0.45), "across")]
 
 
 def _smear(rng: np.random.Generator) -> list[Block]:
@@ -250,7 +267,8 @@ FAMILIES: dict[str, Callable[[np.random.Generator], list[Block]]] = {
     "scatter": _scatter,
     "aberrated": _aberrated,
     "peaked": _peaked,
+    "deferred": _deferred,
 }
 """How to draw the blocks of a sensor of each family."""
-UNEVEN_FAMILIES: Final = ("trail", "shifted", "processed", "aberrated")
+UNEVEN_FAMILIES: Final = ("trail", "shifted", "processed", "aberrated", "deferred")
 """Those whose sensors' spread functions may differ from side to side."""

@@ -121,6 +121,19 @@ def test_intervals_hold_behind_spots_that_fall_slowly():
     assert held[..., 1:3].mean() > 0.8
 
 
+def test_intervals_hold_behind_charge_that_is_left_to_the_next_pixel():
+    """With trails that fall evenly alone, two thirds of the intervals of FWHM held."""
+    z = []
+    for draw in range(8):
+        rng = np.random.default_rng([13, draw])
+        loss = ac.optics.TransferLoss(rng.uniform(0.15, 0.4))
+        blur = ac.optics.Gaussian(rng.uniform(0.25, 0.45))
+        z.append(mirrors_behind(ac.Sensor([blur, ac.optics.Detector(), loss]), rng)[1])
+    held = np.abs(z) < 1.96
+    assert held.mean() > 0.9
+    assert held[..., 3].mean() > 0.8
+
+
 def test_intervals_hold_over_the_families_of_sensors():
     """Two sensors of every family and of halos of 5 %: a prior without them is off twice as far."""
     z, words = [], []

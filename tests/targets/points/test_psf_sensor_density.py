@@ -116,5 +116,7 @@ def test_sensors_of_another_blur_have_no_part():
         "plain",
         "scatter",
         "footprint",
+        "peaked",
+        "deferred",
     }
     assert trailing.part.size < narrow.part.size

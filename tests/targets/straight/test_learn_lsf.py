@@ -54,6 +54,6 @@ def test_learning_writes_every_family(tmp_path):
         assert set(kept.files) == {"halo", "smear"}
         for name in kept.files:
             assert kept[name] == pytest.approx(found[name], abs=1e-6)
-    # Scattered, aberrated and peaked sensors are of the density alone.
-    of_density = {"scatter", "aberrated", "peaked"}
+    # Some are of the density alone.
+    of_density = {"scatter", "aberrated", "peaked", "deferred"}
     assert set(FAMILY_LOG_AMPLITUDES) == set(FAMILIES) - of_density

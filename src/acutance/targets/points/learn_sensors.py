@@ -44,6 +44,7 @@ DENSITY_COUNTS: Final = {
     "scatter": 600,
     "footprint": 500,
     "peaked": 600,
+    "deferred": 300,
 }
 """Sensors of the density: more of families that vary in more ways. "plain" is a Gaussian blur and a
 detector, nothing else; "footprint" the same with a detector that is no pixel: with gaps between

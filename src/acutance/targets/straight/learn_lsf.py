@@ -49,6 +49,7 @@ DENSITY_COUNTS = {
     "scatter": 1200,
     "aberrated": 500,
     "peaked": 800,
+    "deferred": 350,
 }
 """Sensors of the density: more of families that vary in more ways. "plain" is a Gaussian blur and a
 detector, nothing else."""
