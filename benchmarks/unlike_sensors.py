@@ -92,13 +92,15 @@ class Lorentz:
 
 
 @dataclass(frozen=True)
-class TransferLoss:
-    """Charge that a pixel leaves to the next one along, as a CCD of poor transfer efficiency."""
+class Amplifier:
+    """Electronics of second order along rows: they lag, and swing about once."""
 
-    share: float
+    corner_cpp: float
+    damping: float
 
     def otf(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
-        return np.asarray((1 - self.share) / (1 - self.share * np.exp(-2j * np.pi * v)) + 0 * u)
+        share = u / self.corner_cpp
+        return np.asarray(1 / (1 - share**2 + 2j * self.damping * share) + 0 * v)
 
 
 def _blur(rng: np.random.Generator) -> list[Block]:
@@ -122,7 +124,9 @@ SHAPES: dict[str, Callable[[np.random.Generator], list[Block]]] = {
     "secant spot": lambda rng: [Detector(), Secant(rng.uniform(0.2, 0.5))],
     "double image": lambda rng: [*_blur(rng), SecondImage(0.3, rng.uniform(0.3, 0.9), False)],
     "exponential diffusion": lambda rng: [*_blur(rng), Lorentz(rng.uniform(0.1, 0.3))],
-    "loss of transfer": lambda rng: [*_blur(rng), TransferLoss(rng.uniform(0.15, 0.4))],
+    "electronics of second order": lambda rng: [
+        *_blur(rng), Amplifier(rng.uniform(0.7, 1.5), rng.uniform(0.5, 0.8))
+    ],
     "smear of changing speed": lambda rng: [
         *_blur(rng), *2 * [Smear(rng.uniform(0.3, 1.0), "across")]
     ],

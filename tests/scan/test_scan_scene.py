@@ -376,7 +376,9 @@ def test_the_sensor_is_that_of_the_last_turn_where_its_form_has_several_optima()
     for number, u, v in ((scene.across, 0.25, 0.0), (scene.along, 0.0, 0.25)):
         truth = abs(sensor.otf(np.array([u]), np.array([v]))[0])
         found = number.mtf(0.25)
-        assert abs(found.value - truth) < 2.5 * found.std
+        # Of this scene .004 and .010, the next optimum some .02.
+        assert abs(found.value - truth) < 0.012
+        assert abs(found.value - truth) < 3 * found.std
         assert found.std < 0.004
 
 
