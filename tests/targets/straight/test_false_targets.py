@@ -239,6 +239,6 @@ def test_few_clean_edges_of_any_family_are_warned_of(family):
     # Of 60 of each, 0 to 7 % are: 3 of 8 are seen once in 60 runs at 7 %. What is interpolated at
     # one phase is uneven, as beside a strip: of 60 shifted 17 % are, of 60 processed 30 %. Coma
     # is uneven as well: of 60 aberrated 32 %, half of them as if the values bent towards a level.
-    # Charge that comes a pixel late looks like a rim: of 100 deferred 46 %.
-    often = {"shifted": 4, "processed": 5, "aberrated": 5, "deferred": 5}
+    # Charge that comes a pixel late is uneven, too: of 100 deferred 29 %.
+    often = {"shifted": 4, "processed": 5, "aberrated": 5, "deferred": 4}
     assert sum(warned) <= often.get(family, 2)

@@ -63,8 +63,9 @@ _MIN_ASYMMETRY_STDS, _MIN_GROUND_STDS = 0.3, 0.5
 """Of the relative edge response (RER): where the ESF is more symmetric and the ground more even, a
 strip is not looked for."""
 _REACH_PX: Final = 4.0
+_TRAILS: Final = ("trail", "deferred")
 _MAX_TRAIL: Final = 0.95
-"""Probability of a charge trail, beyond which it explains what is not symmetric."""
+"""Probability of a charge trail of any kind, beyond which it explains what is not symmetric."""
 _MIN_GAIN: Final = 0.1
 """Of log evidence without amplitudes of its own, below which no strip becomes probable with them:
 of 140 that did, 2 lay below."""
@@ -105,7 +106,8 @@ def find_rim(data: CheckData, fit: SplineEdge) -> Rim | None:
     data : CheckData
     fit : SplineEdge
     """
-    if not _shows_signs(fit, data.asymmetry) or fit.families.get("trail", 0.0) > _MAX_TRAIL:
+    trail = sum(fit.families.get(name, 0.0) for name in _TRAILS)
+    if not _shows_signs(fit, data.asymmetry) or trail > _MAX_TRAIL:
         return None
     model = _Model.of(data, fit)
     found = _compared(model)
