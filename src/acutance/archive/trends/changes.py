@@ -194,10 +194,10 @@ def _probability(posterior: TrendPosterior, since: float, until: float) -> float
 
 def event_effects(posterior: TrendPosterior, images: ImageMeans) -> tuple[EventEffect, ...]:
     """The step, and the change of the drift, at every stated event that images show."""
-    found, at = [], 4
+    found, following = [], 4
     for event in posterior.design.events:
+        at, following = following, following + 1 + event.changes_drift
         if not images.surround(event.year):
-            at += 1 + event.changes_drift
             continue
         size = posterior.coefficient(at).estimate()
         relative = _relative_size(posterior, at, np.full(posterior.share.size, event.year))
@@ -206,5 +206,4 @@ def event_effects(posterior: TrendPosterior, images: ImageMeans) -> tuple[EventE
             before = posterior.rate(event.year - _JUST_YEARS)
             slopes = before.estimate(), posterior.coefficient(at + 1).estimate()
         found.append(EventEffect(event.name, date_of(event.year), size, relative, *slopes))
-        at += 1 + event.changes_drift
     return tuple(found)

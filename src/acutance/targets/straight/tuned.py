@@ -102,8 +102,8 @@ FAMILY_WEIGHTS: Final = {"telescope": 3.0, "restored": 2.0, "aberrated": 0.3, "d
 """How often sensors of a family are expected, those of the others once (sensor_density.py).
 Compensated telescopes are one family and most products: counted once, light kernels over them pass
 for halos (40 px, SNR 100, strengths of .1 to .4: 84 % of the intervals of RER hold, then 91). Coma
-and deferred charge look like a strip along the border and are rarer: of 159 strips 30, 29 and
-25 stay unnoticed at a weight of one, .3 and none."""
+looks like a strip along the border and is rarer: of 159 strips 30, 29 and
+25 stay unnoticed at a weight of one, .3 and none. Deferred charge does, too."""
 MAX_SENSOR_MISFIT: Final = 20.0
 """Chi-square by which the density of sensors may follow the pixels less than the normal prior,
 which has some five more degrees of freedom."""
