@@ -41,7 +41,7 @@ def main() -> None:
     if arguments.density is not None:
         if arguments.more is not None:
             family, count = arguments.more
-            kept = _kept(arguments.density)
+            kept = kept_density(arguments.density)
             density = with_more(kept, family, int(count), arguments.seed)
         else:
             density = draw_density(DENSITY_COUNTS, arguments.seed)
@@ -50,7 +50,7 @@ def main() -> None:
         print(f"{sensors} sensors, {density['basis'].shape[1]} coordinates")
 
 
-def _kept(path: Path) -> dict[str, np.ndarray]:
+def kept_density(path: Path) -> dict[str, np.ndarray]:
     """The arrays of a file of the density."""
     with np.load(path, allow_pickle=False) as file:
         return {name: file[name].astype(float) for name in file.files}

@@ -12,7 +12,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-import numpy as np
+from learn_lsf import kept_density
 
 from acutance.targets.points.learn_psf import learn, write
 from acutance.targets.points.learn_sensors import (
@@ -43,15 +43,9 @@ def main() -> None:
         more = arguments.more is not None
         counts = {arguments.more[0]: int(arguments.more[1])} if more else DENSITY_COUNTS
         drawn = draw_departures(counts, arguments.seed)
-        found = with_more(_kept(arguments.density), drawn) if more else density(drawn)
+        found = with_more(kept_density(arguments.density), drawn) if more else density(drawn)
         write_density(arguments.density, found)
         print(f"{sum(counts.values())} sensors")
-
-
-def _kept(path: Path) -> dict[str, np.ndarray]:
-    """The arrays of a file of the density."""
-    with np.load(path, allow_pickle=False) as file:
-        return {name: file[name].astype(float) for name in file.files}
 
 
 if __name__ == "__main__":
