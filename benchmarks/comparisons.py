@@ -30,7 +30,7 @@ class Case:
     which `common` is the part of the variance that methods on the same pixels share. `target` is
     what a target has of its own, `site` what a site has. `later`: how many years the second group
     begins after the first. `together`: one measurement has both directions. `target_of_both`:
-    methods see the same of a target, else each its own.
+    methods see the same of a target, else each its own; `target_of_one` is what each sees alone.
     """
 
     images: tuple[int, int] = (20, 0)
@@ -44,6 +44,7 @@ class Case:
     noise: float = 0.02
     common: float = 0.0
     target: float = 0.0
+    target_of_one: float = 0.0
     site: float = 0.0
     drift: float = 0.0
     later: float = 0.0
@@ -110,6 +111,24 @@ CASES = {
     "other images, 3 sites of one target each, which differ by 2 %": Case(
         images=(36, 36), sites=3, target=0.02, by="method", target_of_both=False
     ),
+    "other images, the same 4 sites of one target each, which differ by 5 %": Case(
+        images=(40, 40), sites=4, target=0.05, by="method"
+    ),
+    "the same, by 1 % in what one method sees too": Case(
+        images=(40, 40), sites=4, target=0.05, target_of_one=0.01, by="method"
+    ),
+    "other images, the same 3 sites of one target each, which differ by 5 %, 9 and 6": Case(
+        images=(9, 6), sites=3, target=0.05, by="method"
+    ),
+    "other images, the same 10 targets in each, which differ by 5 %, 5 and 12": Case(
+        images=(5, 12), targets=10, target=0.05, by="method"
+    ),
+    "other images, the same 5 sites of 4 targets each, which differ by 5 % both": Case(
+        images=(40, 20), sites=5, targets=4, target=0.05, site=0.05, by="method"
+    ),
+    "other images, the same 4 sites, which differ by 5 %, drift 2 %, 2 years later": Case(
+        images=(40, 40), sites=4, target=0.05, drift=0.02, later=2.0, by="method"
+    ),
     "other images, drift 2 %, 2 years later": Case(
         images=(20, 20), by="method", drift=0.02, later=2.0
     ),
@@ -153,7 +172,8 @@ def simulate(case: Case, rng: np.random.Generator) -> Columns:
         value = 1 + case.difference * (number == 0) + case.drift * (year - 2022.5)
         value = value + air + case.own * rng.standard_normal(size)
         site = np.arange(size) % case.sites
-        relative = value[:, None] + peculiar[site] + case.noise * (common + alone)
+        alone_seen = case.target_of_one * rng.standard_normal(peculiar.shape)
+        relative = value[:, None] + (peculiar + alone_seen)[site] + case.noise * (common + alone)
         parts.append(_columns(case, number, apart, year, LEVEL * relative))
     return Columns({name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
 

@@ -86,10 +86,29 @@ def followers(rng: np.random.Generator, images: int, rate: float = -0.03) -> Col
     return rows_of(*parts)
 
 
+def sensors(rng: np.random.Generator, images: int, alone: float = 0.01) -> Columns:
+    """Two sensors over five targets that differ by 5 %, each image of one of them.
+
+    `alone` is what a target does to one of the sensors only.
+    """
+    targets = 0.05 * LEVEL * rng.standard_normal(5)
+    parts = []
+    for number, (name, level) in enumerate((("A", 1.02 * LEVEL), ("B", LEVEL))):
+        at = np.arange(images) % targets.size
+        own = (targets + alone * LEVEL * rng.standard_normal(targets.size))[at]
+        parts.append({
+            "sensor": name, "image_id": 10**6 * number + np.arange(images),
+            "target": np.array([f"target {one}" for one in at], object),
+            "mtf_nyquist": level + own + 0.03 * LEVEL * rng.standard_normal(images),
+        })  # fmt: skip
+    return rows_of(*parts)
+
+
 @pytest.mark.parametrize(
     ("simulate", "by", "images", "basis"),
     [(edges, "orientation", 12, "image"), (edges, "orientation", 3, "image"),
-     (methods, "method", 8, "target"), (followers, "method", 15, "means")],
+     (methods, "method", 8, "target"), (followers, "method", 15, "means"),
+     (sensors, "sensor", 15, "targets")],
 )  # fmt: skip
 def test_intervals_hold(simulate, by, images, basis) -> None:
     """A deviation 0.8 or 1.25 times the true one leaves these bounds, as the other two show."""
@@ -122,6 +141,44 @@ def test_targets_come_again_in_every_image(kinds: int, least: float) -> None:
         one = only(compare_groups(rows_of(*parts), "mtf_nyquist"))
         held += abs(one.difference.value) < 1.96 * one.difference.std
     assert held / 300 > least
+
+
+def test_what_a_target_does_to_both_sensors_cancels() -> None:
+    """The least possible is what a target does to one of them, and the scatter of images."""
+    rng = np.random.default_rng(14)
+    std = [
+        only(compare_groups(sensors(rng, 40), "mtf_nyquist", "sensor")).relative.std
+        for _ in range(100)
+    ]
+    least = np.hypot(0.01, 0.03 / 8**0.5) * (2 / 5) ** 0.5
+    assert least < np.median(std) < 1.6 * least
+
+
+def test_as_many_images_of_a_target_as_there_are_count() -> None:
+    """Of 600 images each has some partners only: the mean difference is of all of them."""
+    rng = np.random.default_rng(15)
+    rows = sensors(rng, 3000, alone=0.0)
+    one = only(compare_groups(rows, "mtf_nyquist", "sensor"))
+    is_first = rows["sensor"] == "A"
+    difference = rows["mtf_nyquist"][is_first].mean() - rows["mtf_nyquist"][~is_first].mean()
+    assert one.difference.value == pytest.approx(difference, abs=1e-12)
+    assert one.images == (3000, 3000)
+    assert one.sentence.endswith("on the same targets in 3000 and in 3000 images.")
+
+
+def test_few_common_targets_do_not_hide_what_the_means_tell() -> None:
+    """Three targets of both among thirty of each: of them the other ones tell more."""
+    rng = np.random.default_rng(16)
+    parts = []
+    for number, (name, level) in enumerate((("A", 1.02 * LEVEL), ("B", LEVEL))):
+        of = np.arange(60) % 30
+        names = [f"{'' if at < 3 else name}{at}" for at in of]
+        parts.append({
+            "sensor": name, "image_id": 1000 * number + np.arange(60),
+            "target": np.array(names, object),
+            "mtf_nyquist": level + 0.03 * LEVEL * rng.standard_normal(60),
+        })  # fmt: skip
+    assert only(compare_groups(rows_of(*parts), "mtf_nyquist", "sensor")).basis == "means"
 
 
 def test_what_an_image_does_to_both_cancels() -> None:

@@ -5,7 +5,8 @@ In the order the data take:
 - `groups`: rows of an archive become groups to be compared, each of one sensor, band, direction
 - `pairing`: what two groups measured of the same thing, so that what is common to both cancels
 - `same_images`: their difference from these pairs; `means`: from different images, the drift
-  between them allowed for; `random_difference`: what both give
+  between them allowed for; `same_targets`: from different images of the same targets;
+  `random_difference`: what all of these give
 - `target_cells`, `crossed_effects`: what is peculiar to a target, a site or an image, and does not
   average out over the others; `target_notes`: what cannot be told of few targets
 - `degrees`: parts of a deviation with few degrees of freedom, joined

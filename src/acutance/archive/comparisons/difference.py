@@ -58,11 +58,12 @@ class Difference:
     systematic_std : float
         Part of the deviation of `difference` that does not average out.
     scatter : float or None
-        Of the differences between images, beyond their stated deviations; None of means.
-    basis : {"measurement", "target", "image", "means"}
-        What both have in common: one measurement, the targets, the images, nothing.
+        Of the differences between images, beyond their stated deviations; None of different images.
+    basis : {"measurement", "target", "image", "targets", "means"}
+        What both have in common: one measurement, the targets of an image, the images, the targets
+        of different images, nothing.
     images : (int, int)
-        Of the first and of the second; the same ones but for means.
+        Of the first and of the second; the same ones but for the last two.
     measurements : (int, int)
     margin : float
         Relative difference below which groups are said to agree.
@@ -105,8 +106,13 @@ class Difference:
         return "agree" if max(-low, high) <= self.margin else "cannot be told"
 
     @property
+    def is_of_different_images(self) -> bool:
+        """Whether each group has images of its own."""
+        return self.basis in ("targets", "means")
+
+    @property
     def _is_of_few_images(self) -> bool:
-        if self.basis == "means":
+        if self.is_of_different_images:
             return max(self.images) < 2
         return self.images[0] < MIN_IMAGES
 
@@ -141,7 +147,7 @@ class Difference:
         if self.answer == "agree":
             return f"{pair} agree within {100 * self.margin:g} %{self._unit_words} ({ends})"
         if self._is_of_few_images:
-            is_one = self.basis != "means" and self.images[0] == 1
+            is_one = not self.is_of_different_images and self.images[0] == 1
             these = "this image" if is_one else "these images"
             return f"whether {pair} differ cannot be told of so few images ({ends} in {these})"
         return f"whether {pair} differ cannot be told yet ({ends})"
@@ -169,6 +175,8 @@ class Difference:
     @property
     def _basis_words(self) -> str:
         one, other = self.images
+        if self.basis == "targets":
+            return f"measured on the same targets in {one} and in {other} images"
         if self.basis == "means":
             return f"means of {one} and of {other} images"
         return f"{_BASIS_WORDS[self.basis]} {one} image{'s' if one > 1 else ''}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final, TypeVar
 
 import numpy as np
@@ -67,6 +67,16 @@ class MeasuredGroup:
     target: list[Target | None]
     procedure: list[str]
     gsd_m: float
+
+    def where(self, mask: NDArray[np.bool_]) -> MeasuredGroup:
+        """The measurements of which a mask (n,) is true."""
+        return replace(
+            self, value=self.value[mask], std=self.std[mask],
+            systematic_std=self.systematic_std[mask], when=self.when[mask],
+            image=self.image[mask], measurement=self.measurement[mask],
+            target=[one for one, own in zip(self.target, mask, strict=True) if own],
+            procedure=[one for one, own in zip(self.procedure, mask, strict=True) if own],
+        )  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,8 @@ Each has its own mean over images with random effects, of its targets too where 
 A sensor that drifts looks sharper to the method that came first, so a drift common to both groups
 is fitted within the groups and taken out; its uncertainty counts by the time between their mean
 dates. Where a group has too few images to show its own scatter, levels and drift are fitted
-together and have one scatter. What cannot be told from a drift (a step between two groups that
+together and have one scatter. Where both saw the same targets, target is compared with target
+(`same_targets`). What cannot be told from a drift (a step between two groups that
 follow one another) is said.
 """
 
@@ -19,7 +20,9 @@ import numpy as np
 
 from acutance.archive.comparisons.degrees import StdPart, joined_std, part_of_mean
 from acutance.archive.comparisons.groups import MeasuredGroup
+from acutance.archive.comparisons.pairing import Basis
 from acutance.archive.comparisons.random_difference import RandomDifference
+from acutance.archive.comparisons.same_targets import same_targets
 from acutance.archive.comparisons.target_cells import mean_of_cells, target_cells
 from acutance.archive.comparisons.target_notes import target_notes
 from acutance.archive.trends.images import ImageMeans, image_means
@@ -36,6 +39,9 @@ _APART_YEARS: Final = 0.02
 """Mean dates that are closer need no drift."""
 _MIN_DEGREES: Final = 2
 """Left to a group beside a drift, to have a scatter of its own."""
+_MOST: Final = 0.5
+"""Share of the measurements on common targets from which these alone are asked."""
+_Groups = tuple[MeasuredGroup, MeasuredGroup]
 
 
 @dataclass(frozen=True)
@@ -73,6 +79,31 @@ def difference_of_means(
     groups = (first, second)
     if drift.rate:
         groups = (_without_drift(first, drift.rate), _without_drift(second, drift.rate))
+    basis, value, part = _difference(groups, drift, years)
+    notes = tuple(_notes(images, first, second, one_sensor=one_sensor, dated=dated, basis=basis))
+    return RandomDifference(
+        basis, value - drift.rate * years, part, level, None, (images[0].size, images[1].size),
+        notes,
+    )  # fmt: skip
+
+
+def _difference(groups: _Groups, drift: _Drift, years: float) -> tuple[Basis, float, StdPart]:
+    """On the targets that both saw, or of means where these are few of many and means tell more."""
+    same = same_targets(*groups)
+    if same is None:
+        return "means", *_difference_apart(groups, drift, years)
+    value, part = same.difference()
+    part = joined_std(part, drift.part(years))
+    if same.share < _MOST:
+        found = _difference_apart(groups, drift, years)
+        if found[1].estimate(0.0).std < part.estimate(0.0).std:
+            return "means", *found
+    return "targets", value, part
+
+
+def _difference_apart(groups: _Groups, drift: _Drift, years: float) -> tuple[float, StdPart]:
+    """The means of both, each by itself."""
+    images = _images(groups[0]), _images(groups[1])
     spent = _spent_degrees(images) if drift.rate else (0.0, 0.0)
     # What a drift leaves of one or two degrees of freedom is too uneven to be joined.
     least = _MIN_DEGREES if drift.rate else 1
@@ -81,13 +112,9 @@ def difference_of_means(
         part = joined_std(*(own for _, own in found), drift.part(years))
     else:
         found = [_over_targets(group) or (_level(group), StdPart(0.0)) for group in groups]
-        part = _part_of_one_scatter((_images(groups[0]), _images(groups[1])), drift, years)
+        part = _part_of_one_scatter(images, drift, years)
         part = joined_std(part, *(own for _, own in found))
-    return RandomDifference(
-        "means", found[0][0] - found[1][0] - drift.rate * years, part, level, None,
-        (images[0].size, images[1].size),
-        tuple(_notes(images, first, second, one_sensor=one_sensor, dated=dated)),
-    )  # fmt: skip
+    return found[0][0] - found[1][0], part
 
 
 def _images(group: MeasuredGroup) -> ImageMeans:
@@ -186,13 +213,14 @@ def _off(number: Floats) -> Floats:
 
 def _notes(
     images: tuple[ImageMeans, ImageMeans], first: MeasuredGroup, second: MeasuredGroup, *,
-    one_sensor: bool, dated: bool,
+    one_sensor: bool, dated: bool, basis: Basis,
 ) -> Iterator[str]:  # fmt: skip
     if min(one.size for one in images) < 2:
         lone = [group.name for group, one in zip((first, second), images, strict=True)
                 if one.size < 2]  # fmt: skip
         yield f"One image of {' and of '.join(lone)}: its own scatter is not known."
-    yield from target_notes(first, second)
+    if basis == "means":
+        yield from target_notes(first, second)
     if not one_sensor:
         return
     if not dated:

@@ -21,8 +21,9 @@ from acutance.curves.grid import Floats
 
 __all__ = ["Basis", "Pairs", "find_pairs"]
 
-Basis = Literal["measurement", "target", "image", "means"]
-"""What two groups have in common: one measurement, one target of one image, one image, nothing."""
+Basis = Literal["measurement", "target", "image", "targets", "means"]
+"""What two groups have in common: one measurement, one target of one image, one image, the targets
+of different images, nothing."""
 
 MIN_IMAGES: Final = 3
 """Images that must hold both groups: the scatter of two differences is hardly known."""
@@ -110,7 +111,7 @@ def _pairs(
     groups, labels = [], []
     for group, own in zip((first, second), keys, strict=True):
         label = np.array([index.get(key, -1) for key in own])
-        groups.append(_of(group, label >= 0))
+        groups.append(group.where(label >= 0))
         labels.append(label[label >= 0])
     (value_1, variance_1), (value_2, variance_2) = (
         _means(group, label) for group, label in zip(groups, labels, strict=True)
@@ -138,17 +139,6 @@ def _keys(basis: Basis, group: MeasuredGroup, *, one_procedure: bool) -> _Keys:
         None if target is None else (image, target, procedure)
         for image, target, procedure in zip(images, group.target, procedures, strict=True)
     ]
-
-
-def _of(group: MeasuredGroup, mask: NDArray[np.bool_]) -> MeasuredGroup:
-    return MeasuredGroup(
-        name=group.name, value=group.value[mask], std=group.std[mask],
-        systematic_std=group.systematic_std[mask], when=group.when[mask], image=group.image[mask],
-        measurement=group.measurement[mask],
-        target=[one for one, own in zip(group.target, mask, strict=True) if own],
-        procedure=[one for one, own in zip(group.procedure, mask, strict=True) if own],
-        gsd_m=group.gsd_m,
-    )  # fmt: skip
 
 
 def _means(group: MeasuredGroup, label: NDArray[np.int64]) -> tuple[Floats, Floats]:

@@ -19,7 +19,7 @@ from acutance.archive.trends.images import image_means
 from acutance.archive.trends.series import Series
 from acutance.curves.grid import Floats
 
-__all__ = ["TargetCells", "difference_of_cells", "mean_of_cells", "target_cells"]
+__all__ = ["TargetCells", "difference_of_cells", "mean_of_cells", "numbered_cells", "target_cells"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,10 +60,25 @@ def target_cells(
     target : sequence of n
         Site and name; None where it is not known.
     """
-    names, images = np.unique(image, return_inverse=True)
+    images = np.unique(image, return_inverse=True)[1]
     which = _coming_again(target, images)
     site = _coming_again([None if one is None else one[0] for one in target], images)
-    cells = np.column_stack([images, which])
+    return numbered_cells(value, std, image, which, site)
+
+
+def numbered_cells(
+    value: Floats, std: Floats, image: NDArray[np.int64], target: NDArray[np.int64],
+    site: NDArray[np.int64],
+) -> TargetCells:  # fmt: skip
+    """The same where targets and sites have numbers.
+
+    Parameters
+    ----------
+    value, std : (n,) array
+    image, target, site : (n,) int array
+    """
+    names, images = np.unique(image, return_inverse=True)
+    cells = np.column_stack([images, target])
     pairs, first, label = np.unique(cells, axis=0, return_index=True, return_inverse=True)
     label = label.reshape(-1)
     means = image_means(

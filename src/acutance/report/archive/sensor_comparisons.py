@@ -25,7 +25,7 @@ __all__ = ["SensorComparisons", "comparison_tables", "comparisons_of"]
 _TITLES = {"orientation": "Across and along", "kind": "Kinds", "method": "Methods"}
 _COMMON = {
     "measurement": "same measurements", "target": "same targets", "image": "same images",
-    "means": "means",
+    "targets": "same targets, other images", "means": "means",
 }  # fmt: skip
 _MAX_SENTENCES = 6
 """More pairs of methods, or bands, are in the tables only."""
@@ -119,10 +119,11 @@ def _table(
     rows = []
     for (of, first, second), found in by_pair.items():
         main = next(iter(found.values()))
-        images = str(main.images[0]) if main.basis != "means" else " / ".join(map(str, main.images))
+        images = main.images if main.is_of_different_images else main.images[:1]
         rows.append((
             "\n".join((f"{first} − {second}", *([of] if of else []))),
-            *(_cell(found.get(metric)) for metric in metrics), _COMMON[main.basis], images,
+            *(_cell(found.get(metric)) for metric in metrics), _COMMON[main.basis],
+            " / ".join(map(str, images)),
         ))  # fmt: skip
     labels = (METRIC_WORDS[metric].label for metric in metrics)
     notes = dict.fromkeys(
