@@ -12,6 +12,7 @@ from rasterio.rpc import RPC
 
 from acutance.errors import RegionError
 from acutance.raster import open_image
+from acutance.raster.metadata.read_statement import read_statement
 from acutance.raster.sensor_model import georeference_of
 
 
@@ -72,6 +73,26 @@ def test_the_gsd_on_the_ground(by_rpc):
     gsd = georeference_of(by_rpc, 200.0).gsd(20.0, 20.0)
     assert gsd.row_m == pytest.approx(2e-5 * 111_107, rel=1e-3)
     assert gsd.col_m == pytest.approx(2e-5 * 111_320 * np.cos(np.radians(43.0)), rel=3e-3)
+
+
+def test_an_image_in_sensor_geometry_has_the_gsd_of_its_middle(by_rpc):
+    gsd = by_rpc.gsd()
+    at_middle = georeference_of(by_rpc, 200.0).gsd(19.5, 24.5)
+    assert (gsd.row_m, gsd.col_m) == pytest.approx((at_middle.row_m, at_middle.col_m), rel=1e-6)
+    assert gsd == by_rpc.gsd(3.0, 4.0) == by_rpc.gsd_of_file()
+    stated = read_statement(by_rpc.path).gsd_m
+    assert stated.value == (gsd.row_m, gsd.col_m)
+    assert stated.source == "rpc.tif: RPC or ground control points"
+    assert open_image(by_rpc.path, gsd_m=2.0).gsd().row_m == 2.0
+
+
+def test_a_sensor_model_that_no_image_has_states_no_gsd(write_raster, pixels):
+    def edit(dataset):
+        rpc = linear_rpc()
+        rpc.lat_scale = rpc.long_scale = 1e-9
+        dataset.rpcs = rpc
+
+    assert open_image(write_raster("broken.tif", pixels, edit=edit)).gsd() is None
 
 
 def test_ground_control_points(write_raster, pixels):

@@ -31,6 +31,7 @@ from acutance.raster.packed_file import packed_names
 from acutance.raster.pixels import equals_nodata, usable_values
 from acutance.raster.region import Box
 from acutance.raster.restored_tag import restoration_of
+from acutance.raster.sensor_model import modelled_gsd
 
 __all__ = [
     "CACHE_BYTES",
@@ -117,6 +118,7 @@ def open_dataset(path: str, band: int, gsd: Gsd | None, nodata: float | None) ->
         flags = dataset.mask_flag_enums[band - 1]
         level = _largest_count(dataset, band)
         declared = _declared_gsd(dataset)
+        geolocation = _geolocation(dataset)
         return Image(
             path=path,
             band=band,
@@ -135,10 +137,11 @@ def open_dataset(path: str, band: int, gsd: Gsd | None, nodata: float | None) ->
             ),
             # A negative scale makes the largest count the smallest value: no value is a limit.
             saturation_level=None if level is None or scale < 0 else level * scale + offset,
-            geolocation=_geolocation(dataset),
+            geolocation=geolocation,
             own_gsd=declared if gsd is None else gsd,
             declared_gsd=declared,
             restored=restoration_of(dataset.tags(), band),
+            modelled_gsd=modelled_gsd(dataset) if geolocation is None else None,
         )
 
 

@@ -87,6 +87,9 @@ class Image(ShortRepr):
         The nodata value that was stated when the file was opened.
     restored : str or None
         The filter that restored the band, by the tag that `acutance.restore` wrote.
+    modelled_gsd : Gsd or None
+        Of a file without a geotransform the GSD in its middle by RPC or ground control points, on
+        ground of the height for which these are made.
 
     Raises
     ------
@@ -110,6 +113,7 @@ class Image(ShortRepr):
     band_name: str | None = None
     stated_nodata: float | None = None
     restored: str | None = None
+    modelled_gsd: Gsd | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.along_track, str) or self.along_track not in ("x", "y"):
@@ -282,9 +286,9 @@ class Image(ShortRepr):
         return self.declared_gsd or self._located_gsd(row, col)
 
     def _located_gsd(self, row: float | None, col: float | None) -> Gsd | None:
-        """The GSD by the geolocation."""
+        """The GSD by the geolocation, or the sensor model."""
         if self.geolocation is None:
-            return None
+            return self.modelled_gsd
         at_row = (self.shape[0] - 1) / 2 if row is None else row
         at_col = (self.shape[1] - 1) / 2 if col is None else col
         return self.geolocation.gsd(at_row, at_col)

@@ -14,12 +14,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from acutance.curves.grid import Floats
-from acutance.errors import RegionError
+from acutance.errors import OptionError, RegionError
 from acutance.raster.geolocation import LONLAT_CRS, Geolocation, ground_gsd, transform_points
 from acutance.raster.gsd import Gsd
 from acutance.raster.image import Image
 
-__all__ = ["SensorModel", "georeference_of"]
+__all__ = ["SensorModel", "georeference_of", "modelled_gsd"]
 
 ControlPoint = tuple[float, float, float, float, float]
 """Row and column from the outer corner, x, y, height."""
@@ -148,10 +148,37 @@ def georeference_of(
     from acutance.raster.dataset import opened_dataset
 
     with opened_dataset(image.path) as dataset:
-        points, crs = dataset.gcps
-        if dataset.rpcs is not None:
-            return SensorModel(LONLAT_CRS, rpc=dataset.rpcs, height_m=height_m)
-        if len(points) >= 3 and crs is not None:
-            known = tuple((p.row, p.col, p.x, p.y, p.z or 0.0) for p in points)
-            return SensorModel(crs.to_string(), control_points=known, height_m=height_m)
+        model = _model_of(dataset)
+    return None if model is None else replace(model, height_m=height_m)
+
+
+def modelled_gsd(dataset: Any) -> Gsd | None:
+    """The GSD in the middle of an open file by its sensor model, on ground of the middle height.
+
+    Half a kilometre of height is a thousandth of what a satellite sees: no other height is needed.
+
+    Returns
+    -------
+    Gsd or None
+        ``None`` without a sensor model, or if it has no answer there that could be an image's.
+    """
+    model = _model_of(dataset)
+    if model is None:
+        return None
+    if model.rpc is not None:
+        model = replace(model, height_m=model.rpc.height_off)
+    found = model.gsd((dataset.height - 1) / 2, (dataset.width - 1) / 2)
+    try:
+        return None if found is None else found.required_in_range()
+    except OptionError:
+        return None
+
+
+def _model_of(dataset: Any) -> SensorModel | None:
+    points, crs = dataset.gcps
+    if dataset.rpcs is not None:
+        return SensorModel(LONLAT_CRS, rpc=dataset.rpcs)
+    if len(points) >= 3 and crs is not None:
+        known = tuple((p.row, p.col, p.x, p.y, p.z or 0.0) for p in points)
+        return SensorModel(crs.to_string(), control_points=known)
     return None

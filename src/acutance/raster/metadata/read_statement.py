@@ -9,6 +9,7 @@ from pathlib import Path
 
 from acutance.arguments import require_paths
 from acutance.errors import ImageError, RegionError
+from acutance.raster.gsd import Gsd
 from acutance.raster.image import Image
 from acutance.raster.metadata.documents import read_document
 from acutance.raster.metadata.files_beside import files_beside
@@ -27,7 +28,7 @@ def read_statement(
 
     Sources are the documents beside the image (DIMAP, IMD, MTL, Sentinel-2 MTD, KOMPSAT, Gaofen,
     PlanetScope, STAC item), then the tags of its file; the GSD is that of the geotransform, if
-    there is one. What none of them says stays empty, and what they say differently is named.
+    there is one, and that of RPC or ground control points where nothing else states it. What none of them says stays empty, and what they say differently is named.
 
     Parameters
     ----------
@@ -56,7 +57,7 @@ def read_statement(
     else:
         of_files = [read_document(Path(one), name, stated=True) for one in documents]
     tags = read_tags(file_tags(str(image.path)), name)
-    sources = _with_time([_of_geolocation(image, name), *of_files, tags])
+    sources = _with_time([_of_geolocation(image, name), *of_files, tags, _of_model(image, name)])
     return _for_bands(state(str(image.path), sources, _place(image)), image.band_count)
 
 
@@ -120,8 +121,17 @@ def _named(asked: str, names: Sequence[str], image: Image) -> int:
 
 def _of_geolocation(image: Image, name: str) -> Findings:
     """The GSD in the middle of the image, by its geotransform or as the file declares it."""
-    gsd = image.gsd()
+    gsd = None if image.geolocation is None and image.own_gsd is None else image.gsd()
     place = "geotransform" if image.own_gsd is None else "declared GSD"
+    return _gsd_found(name, gsd, place)
+
+
+def _of_model(image: Image, name: str) -> Findings:
+    """The GSD in the middle of an image without a geotransform, by its RPC or control points."""
+    return _gsd_found(name, image.modelled_gsd, "RPC or ground control points")
+
+
+def _gsd_found(name: str, gsd: Gsd | None, place: str) -> Findings:
     return find(name, {"gsd_m": (None if gsd is None else (gsd.row_m, gsd.col_m), place)})
 
 
