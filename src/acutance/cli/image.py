@@ -66,10 +66,12 @@ def image(
 
 
 def _text(found: ImageStatement, pixels: Image) -> str:
+    from acutance.archive.counted import counted
+
     rows, cols = pixels.shape
     values = {
         "bands": _bands(found, pixels.band_count),
-        "pixels": f"{rows} rows, {cols} columns, {pixels.dtype}",
+        "pixels": f"{counted(rows, 'row')}, {counted(cols, 'column')}, {pixels.dtype}",
         **{words: _shown(getattr(found, name)) for name, words in _WORDS.items()},
     }
     width = max(map(len, values))

@@ -28,7 +28,8 @@ def read_statement(
 
     Sources are the documents beside the image (DIMAP, IMD, MTL, Sentinel-2 MTD, KOMPSAT, Gaofen,
     PlanetScope, STAC item), then the tags of its file; the GSD is that of the geotransform, if
-    there is one, and that of RPC or ground control points where nothing else states it. What none of them says stays empty, and what they say differently is named.
+    there is one, and that of RPC or ground control points where nothing else states it. What none
+    of them says stays empty, and what they say differently is named.
 
     Parameters
     ----------
