@@ -146,11 +146,12 @@ def test_names_of_bands(tmp_path):
     write_geotiff(path, np.ones((2, 16, 16), np.uint16), crs="EPSG:32631",
                   transform=(1.0, 0.0, 5e5, 0.0, -1.0, 5e6))  # fmt: skip
     with rasterio.open(path, "r+") as dataset:
-        dataset.descriptions = ("pan", "nir")
+        dataset.descriptions = ("pan", "near\n infrared")
     found = read_statement(path)
-    assert [found.band_name(number) for number in (0, 1, 2, 3)] == [None, "pan", "nir", None]
+    names = ["pan", "near infrared"]
+    assert [found.band_name(number) for number in (0, 1, 2, 3)] == [None, *names, None]
     assert found.to_dict()["bands"] == {
-        "value": ["pan", "nir"],
+        "value": names,
         "source": "scene.tif: descriptions of the bands",
     }
 

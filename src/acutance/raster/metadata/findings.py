@@ -116,8 +116,9 @@ def number(text: Any) -> float | None:
 
 
 def word(*texts: Any, joined: str = "-") -> str | None:
-    """Texts as one word; None if one of them is missing or empty."""
-    parts = [str(text).strip() if isinstance(text, str | int | float) else "" for text in texts]
+    """Texts as one word, on one line; None if one of them is missing or empty."""
+    known = [str(text) if isinstance(text, str | int | float) else "" for text in texts]
+    parts = [" ".join(text.split()) for text in known]
     return joined.join(parts) if parts and all(parts) else None
 
 
