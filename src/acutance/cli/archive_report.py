@@ -9,6 +9,7 @@ import typer
 from acutance.cli.archive_selection import PlaceArgument
 from acutance.cli.archive_trend import EventOption, parse_events
 from acutance.cli.output import check_output
+from acutance.cli.progress import progress_bar
 from acutance.cli.terminal import command_line
 
 __all__ = ["EXAMPLE", "report"]
@@ -43,9 +44,9 @@ def report(
     from acutance.report.archive import sensor_page
 
     events = parse_events(event)
-    with Archive(place, read_only=True) as archive:
+    with Archive(place, read_only=True) as archive, progress_bar("archive report") as progress:
         page = sensor_page(
             archive, sensor, metric=metric, specification=spec, events=events, verdict=verdict,
-            command=command_line(),
+            command=command_line(), progress=progress,
         )  # fmt: skip
     file.deliver(page)

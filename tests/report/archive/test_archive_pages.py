@@ -236,7 +236,9 @@ def test_many_limits_at_the_upper_end_come_down_without_touching():
 
 @pytest.mark.usefixtures("undrawn")
 def test_the_page_of_a_sensor_has_its_state_changes_and_images(archive):
-    page = words_of(sensor_page(archive, "QB02"))
+    seen: list[tuple[int, int]] = []
+    page = words_of(sensor_page(archive, "QB02", progress=lambda *done: seen.append(done)))
+    assert seen == [(0, 1)]
     trend = archive.trend("mtf_nyquist", sensor="QB02", verdict="usable")
     assert f"{trend.level.value:.4f}" in page
     assert "falls by" in page

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
@@ -57,6 +57,7 @@ def sensor_page(
     events: Sequence[Event] = (),
     verdict: str = "usable",
     command: str | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> str:
     """What an archive holds of a sensor, as one self-contained HTML page.
 
@@ -75,6 +76,8 @@ def sensor_page(
         Measurements of this verdict or better are used; all are listed.
     command : str, optional
         The command line.
+    progress : function of (done, total), optional
+        Called before the trends of every band and direction, which take most of the time.
 
     Raises
     ------
@@ -85,7 +88,7 @@ def sensor_page(
     """
     return sensor_page_and_states(
         archive, sensor, metric=metric, specification=specification, events=events,
-        verdict=verdict, command=command,
+        verdict=verdict, command=command, progress=progress,
     )[0]  # fmt: skip
 
 
@@ -98,6 +101,7 @@ def sensor_page_and_states(
     events: Sequence[Event] = (),
     verdict: str = "usable",
     command: str | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> tuple[str, list[SeriesState]]:
     """The page, and the states it has, whose trends take most of its time."""
     if metric not in METRICS:
@@ -114,7 +118,7 @@ def sensor_page_and_states(
             "sensor, or a lower verdict"
         )
     # Told apart by their GSD here, too, and with the note that their band is not named.
-    states = states_of(rows, sensor, metric, events)
+    states = states_of(rows, sensor, metric, events, progress)
     if not states:
         known = [one for one in MAIN_NUMBERS if np.isfinite(rows[one]).any()]
         raise NothingSelectedError(

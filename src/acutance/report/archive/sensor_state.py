@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import date
 
@@ -61,7 +61,11 @@ class SeriesState:
 
 
 def states_of(
-    rows: Columns, sensor: str, metric: str, events: Sequence[Event]
+    rows: Columns,
+    sensor: str,
+    metric: str,
+    events: Sequence[Event],
+    progress: Callable[[int, int], None] | None = None,
 ) -> list[SeriesState]:
     """The state of every band, product level and direction.
 
@@ -74,11 +78,15 @@ def states_of(
         What is drawn, and the main numbers are tabulated with it; what has no value of it has no
         state.
     events : sequence of Event
+    progress : function of (done, total), optional
+        Called before every band and direction.
     """
     metrics = tuple(dict.fromkeys((metric, *MAIN_NUMBERS)))
     several = {one: list(all_series(rows, one)) for one in metrics}
     states = []
     for at, main in enumerate(several[metric]):
+        if progress is not None:
+            progress(at, len(several[metric]))
         known = main.known()
         if known.size == 0:
             continue
