@@ -43,7 +43,7 @@ class Normal:
         """The equations if the first p unknowns are combinations (p, r) of r others."""
         p, r = directions.shape
         rest = self.projection.size - p
-        half = sparse_product(self.gram[:, :p], directions)
+        half = sparse_product(self.gram, directions)
         gram = np.empty((r + rest, r + rest))
         gram[:r, :r], gram[:r, r:] = symmetric_product(directions.T, half[:p]), half[p:].T
         gram[r:, :r], gram[r:, r:] = half[p:], self.gram[p:, p:]
@@ -64,7 +64,7 @@ class Normal:
             Which of the unknowns have gone in their place.
         """
         p, columns = directions.shape[0], np.ascontiguousarray(directions[:, new])
-        products = sparse_product(source.gram[:, :p], columns)
+        products = sparse_product(source.gram, columns)
         rows = np.hstack([products[:p].T @ directions, products[p:].T])
         gram = np.empty((rows.shape[1],) * 2)
         before, after = slice(old.start), slice(old.stop, None)

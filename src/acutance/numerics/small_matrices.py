@@ -47,7 +47,10 @@ def add_product(found: Floats, left: Floats, right: Floats) -> None:
 
 @compiled
 def sparse_product(left: Floats, right: Floats) -> Floats:
-    """The product of two matrices, (n, m) and (m, k): squares of 4 x 4 zeros are left out."""
+    """The product of the first m columns of a matrix, (n, m or more), with another one, (m, k).
+
+    Squares of 4 x 4 zeros are left out.
+    """
     n, m, count = len(left), len(right), right.shape[1]
     found, rows, fours = np.zeros((n, count)), n - n % 4, m - m % 4
     for i in range(0, rows, 4):

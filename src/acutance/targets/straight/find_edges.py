@@ -73,7 +73,7 @@ def find_segments(image: Floats, most: int = 32) -> Iterator[Segment]:
         segment, own = found
         if segment.stop_px - segment.start_px >= _MIN_LENGTH_PX:
             yield segment
-        votes = votes[:, ~own]
+        votes = np.compress(~own, votes, axis=1)
 
 
 def _gradient_votes(image: Floats) -> Floats:

@@ -228,24 +228,19 @@ def combine(cell: NDArray[np.intp], weights: Floats, coefficients: Floats) -> Fl
     return value
 
 
-@compiled
 def esf_from_lsf(coefficients: Floats) -> Floats:
     """ESF coefficients e, (CELLS + 3, ...), of LSF coefficients c, (SIZE, ...)."""
     none = np.zeros_like(coefficients[:3])
-    sums = np.concatenate((none, CELL * coefficients, none[:2]))
-    for i in range(4, len(sums)):
-        sums[i] += sums[i - 1]
-    return sums
+    return np.cumsum(np.concatenate((none, CELL * coefficients, none[:2])), axis=0)
 
 
-@compiled
 def quasi_interpolant(values: Floats) -> Floats:
     """Coefficients of the spline through a smooth function's `values` at the centres.
 
     One step of the inverse of the B-spline's sampling (1/8, 3/4, 1/8); the error is of fourth
     order in the cell.
     """
-    coefficients = 1.25 * values
+    coefficients = np.asarray(1.25 * values)
     coefficients[1:] -= 0.125 * values[:-1]
     coefficients[:-1] -= 0.125 * values[1:]
     return coefficients
