@@ -5,10 +5,11 @@ BIN := $(VENV)/bin
 
 .PHONY: test ready run demo docs lint loops modules clean
 
-# The package alone: loops are compiled while the rest is installed.
+# The package alone: loops are compiled while the rest is installed. pip would compile modules on one core.
 $(VENV)/.measures: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e .
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile -e .
+	-$(BIN)/python -m compileall -q -j 0 $(VENV)/lib > /dev/null
 	touch $@
 
 $(VENV)/.installed: $(VENV)/.measures
