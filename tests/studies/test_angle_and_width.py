@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from acutance.report.studies.study import study_figure
 from acutance.studies import (
     AngleOptions,
     Execution,
@@ -12,6 +13,7 @@ from acutance.studies import (
     study_width,
     study_width_correction,
 )
+from acutance.studies.width_correction import TABLE_3_3
 
 ALONE = Execution(seed=3, workers=1)
 
@@ -102,3 +104,29 @@ def test_both_corrections_find_the_tarp(correction):
 def test_the_simulated_error_is_the_printed_one(correction):
     table = correction.table
     assert table["stated_mtf_nyquist"] == pytest.approx(table["printed_mtf_nyquist"], abs=0.006)
+
+
+def test_one_angle_is_told_once_and_shown_and_has_no_quadratic():
+    result = study_angle(AngleOptions(angles_deg=(10.0,), places=1), ALONE)
+    assert [one.name for one in result.findings] == [
+        "published_at_6_deg_percent", "ours_worst_percent",
+    ]  # fmt: skip
+    found = result.findings[0]
+    assert found.text.startswith("at 10 deg")
+    assert found.published is None
+    for axes in study_figure(result).axes:
+        assert {line.get_marker() for line in axes.lines} == {"o"}
+
+
+def test_changes_of_the_width_are_those_from_the_nominal_one():
+    result = study_width(WidthOptions(widths_px=(3.2,)), ALONE)
+    rows = result.table.where(error="measured")
+    assert rows["stated_px"].tolist() == [3.0, 3.2]
+    gain = 100 * (rows["ratio_gain_0.5"][1] - 1)
+    changed = result.finding("published_measured_0.5_percent").value
+    assert changed == pytest.approx(gain, abs=2.0)
+
+
+def test_one_image_of_a_width_has_no_scatter():
+    options = WidthCorrectionOptions(cases=TABLE_3_3[:1], draws=1)
+    assert not any("nan" in one.text for one in study_width_correction(options, ALONE).findings)

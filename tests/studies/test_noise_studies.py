@@ -119,3 +119,19 @@ def test_impossible_options_are_refused():
         run_study("snow")
     with pytest.raises(OptionError, match="takes SnrOptions"):
         run_study("snr", GroundNoiseOptions())
+
+
+def test_dark_pulses_have_an_snr_as_bright_ones():
+    dark = SnrOptions(noise_dn=(10.0,), draws=1, pulse_dn=(1200.0, 100.0))
+    bright = SnrOptions(noise_dn=(10.0,), draws=1)
+    snr = [study_snr(one, ALONE).table.where(target="pulse")["snr"][0] for one in (dark, bright)]
+    assert snr[0] == pytest.approx(snr[1])
+    ground = GroundNoiseOptions(levels_dn=((400.0, 1100.0),), runs=1)
+    assert study_ground_noise(ground, ALONE).finding("highest_snr").value > 0
+
+
+@pytest.mark.parametrize("kind", [SnrOptions, GroundNoiseOptions])
+@pytest.mark.parametrize("limit", [0.0, -1.0])
+def test_a_limit_that_no_error_meets_is_refused(kind, limit):
+    with pytest.raises(OptionError, match="it has to be above 0"):
+        kind(limit_percent=limit)

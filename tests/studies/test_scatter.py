@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from acutance.studies import Table, minimum_snr
-from acutance.studies.scatter import error_columns, falling_fit
+from acutance.studies.scatter import error_columns, falling_fit, find_minimum
 
 
 def test_tables_select_and_write():
@@ -48,3 +48,11 @@ def test_minimum_snr_is_found_through_scatter():
     assert minimum_snr(snr[order], rms[order], 5.0) == pytest.approx(63, abs=6)
     assert math.isnan(minimum_snr(snr, rms, 0.5))
     assert minimum_snr(snr, rms, 500.0) == snr[0]
+
+
+def test_where_all_levels_are_good_the_lowest_is_no_minimum():
+    levels = Table({"snr": [20.0, 40.0], "rms": [4.0, 2.0]})
+    (all_good,) = find_minimum("m", "it", levels, "rms", 5.0)
+    assert all_good.text == "it needs at most an SNR of 20, the lowest that was tried"
+    (one_good,) = find_minimum("m", "it", levels, "rms", 3.0)
+    assert one_good.text == "it needs an SNR of 40"

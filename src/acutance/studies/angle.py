@@ -190,10 +190,13 @@ def _predicted(options: AngleOptions, angle_deg: float) -> dict[str, float]:
 
 def _findings(table: Table) -> tuple[Finding, ...]:
     angles = table["angle_deg"]
-    found = []
+    found, named = [], set()
     for wanted in (6.0, 14.0):
         known = np.isfinite(table["rest_percent"])
         i = int(np.argmin(np.where(known, np.abs(angles - wanted), np.inf)))
+        if not known.any() or angles[i] in named:
+            continue
+        named.add(angles[i])
         total = float(table["published_percent"][i])
         parts = ", ".join(
             f"{name.replace('_', ' ')} {table[f'{name}_percent'][i]:+.2f}" for name in ANGLE_TERMS
@@ -203,18 +206,20 @@ def _findings(table: Table) -> tuple[Finding, ...]:
                 f"published_at_{wanted:g}_deg_percent",
                 total,
                 f"at {angles[i]:g} deg the published estimator is {total:+.1f} % off: {parts} %",
-                _PUBLISHED_AT_6_DEG_PERCENT if wanted == 6.0 else None,
+                _PUBLISHED_AT_6_DEG_PERCENT if angles[i] == 6.0 else None,
             )
         )
-    intercept = _at_no_angle(angles, table["published_percent"])
-    found.append(
-        Finding(
-            "published_at_0_deg_percent",
-            intercept,
-            f"its quadratic meets no angle at all at {intercept:+.2f} %: the part that does not "
-            "come from the angle is the window's",
+    known = np.isfinite(table["published_percent"])
+    if np.unique(angles[known]).size > 1:
+        intercept = _at_no_angle(angles, table["published_percent"])
+        found.append(
+            Finding(
+                "published_at_0_deg_percent",
+                intercept,
+                f"its quadratic meets no angle at all at {intercept:+.2f} %: the part that does "
+                "not come from the angle is the window's",
+            )
         )
-    )
     worst = float(np.max(np.abs(table["ours_percent"])))
     found.append(
         Finding("ours_worst_percent", worst, f"our estimator is at most {worst:.3f} % off")

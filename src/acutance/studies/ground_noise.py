@@ -12,7 +12,7 @@ from acutance.errors import OptionError
 from acutance.optics import Sensor, preset
 from acutance.simulate import GroundNoise, pulse
 from acutance.studies.result import Finding, StudyResult
-from acutance.studies.scatter import error_columns, find_minimum, find_refusal
+from acutance.studies.scatter import error_columns, find_minimum, find_refusal, require_limit
 from acutance.studies.table import Cell, Table
 from acutance.studies.targets import ESTIMATOR_WORDS, ESTIMATORS, Estimator, measure_both_pulses
 from acutance.studies.trials import Execution, Record, run_trials
@@ -73,6 +73,7 @@ class GroundNoiseOptions:
                 f"levels_dn is {self.levels_dn} and runs is {self.runs}: there have to be a "
                 "contrast and a run"
             )
+        require_limit(self.limit_percent)
 
 
 def study_ground_noise(
@@ -121,7 +122,7 @@ def measure_ground_trial(
         ground_noise=options.ground, rng=rng,
     )  # fmt: skip
     found = measure_both_pulses(image, width_px=options.width_px)
-    signal_dn = float(truth.prf(0.0)) * (bright - dark)
+    signal_dn = float(truth.prf(0.0)) * abs(bright - dark)
     return {"signal_dn": signal_dn, "truth": truth.mtf_nyquist.value, **found}
 
 

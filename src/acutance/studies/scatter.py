@@ -12,7 +12,14 @@ from acutance.errors import OptionError
 from acutance.studies.result import Finding
 from acutance.studies.table import Cell, Table
 
-__all__ = ["error_columns", "falling_fit", "find_minimum", "find_refusal", "minimum_snr"]
+__all__ = [
+    "error_columns",
+    "falling_fit",
+    "find_minimum",
+    "find_refusal",
+    "minimum_snr",
+    "require_limit",
+]
 
 
 def error_columns(name: str, value: Floats, truth: float) -> dict[str, Cell]:
@@ -38,6 +45,24 @@ def error_columns(name: str, value: Floats, truth: float) -> dict[str, Cell]:
         f"{name}_rms_percent": float(np.sqrt(np.mean(error**2))) if some else math.nan,
         f"{name}_refused": int(value.size - known.size),
     }
+
+
+def require_limit(limit_percent: float) -> None:
+    """Refuse a limit that no error stays below.
+
+    Parameters
+    ----------
+    limit_percent : float
+
+    Raises
+    ------
+    OptionError
+        If it is not above 0.
+    """
+    if limit_percent <= 0:
+        raise OptionError(
+            f"limit_percent is {limit_percent:g}: no error stays below it, it has to be above 0"
+        )
 
 
 def falling_fit(value: Floats) -> Floats:
@@ -117,11 +142,12 @@ def find_minimum(
     if not np.isfinite(error).any():
         return ()
     least = minimum_snr(snr, error, limit_percent)
-    needed = (
-        f"an SNR of {least:.0f}"
-        if math.isfinite(least)
-        else f"more than the SNR of {snr.max():.0f} that was tried"
-    )
+    if not math.isfinite(least):
+        needed = f"more than the SNR of {snr.max():.0f} that was tried"
+    elif least == snr.min():
+        needed = f"at most an SNR of {least:.0f}, the lowest that was tried"
+    else:
+        needed = f"an SNR of {least:.0f}"
     return (Finding(name, least, f"{who} needs {needed}", published),)
 
 

@@ -13,7 +13,7 @@ from acutance.errors import OptionError
 from acutance.optics import Sensor, preset
 from acutance.simulate import Noise, edge, pulse
 from acutance.studies.result import Finding, StudyResult
-from acutance.studies.scatter import error_columns, find_minimum, find_refusal
+from acutance.studies.scatter import error_columns, find_minimum, find_refusal, require_limit
 from acutance.studies.table import Cell, Table
 from acutance.studies.targets import (
     ESTIMATOR_WORDS,
@@ -80,6 +80,7 @@ class SnrOptions:
                 f"{min(self.noise_dn, default=0):g}, and {self.draws} draws: every level has to be "
                 "above 0, and there has to be a draw"
             )
+        require_limit(self.limit_percent)
 
 
 @dataclass(frozen=True)
@@ -144,7 +145,7 @@ def measure_snr_trial(options: SnrOptions, trial: SnrTrial, rng: np.random.Gener
             options.sensor, width_px=options.width_px, angle_deg=options.angle_deg,
             shape=options.shape, dark=dark, bright=bright, offset_px=offset, noise=noise, rng=rng,
         )  # fmt: skip
-        signal = float(pulse_truth.prf(0.0)) * (bright - dark)
+        signal = float(pulse_truth.prf(0.0)) * abs(bright - dark)
         found = measure_both_pulses(image, width_px=options.width_px)
         true_mtf = pulse_truth.mtf_nyquist.value
     return {"snr": signal / trial.noise_dn, "truth": true_mtf, **found}

@@ -67,6 +67,7 @@ class WidthOptions:
     widths_px : tuple of float
         2.75 to 3.25 px in steps of 0.05.
     nominal_px : float
+        Changes are told from this width, which is measured in any case.
     angle_deg : float
     shape : (rows, cols)
     pulse_dn : (dark, bright)
@@ -112,9 +113,10 @@ def study_width(
     """
     chosen = chosen_options(options, WidthOptions)
     how = chosen_options(execution, Execution)
-    trials = [
-        WidthTrial(error, width) for error in ("measured", "true") for width in chosen.widths_px
-    ]
+    widths_px = chosen.widths_px
+    if chosen.nominal_px not in widths_px:
+        widths_px = tuple(sorted((*widths_px, chosen.nominal_px)))
+    trials = [WidthTrial(error, width) for error in ("measured", "true") for width in widths_px]
     records = run_trials("width", chosen, trials, measure_width_trial, how)
     table = Table.of_rows(
         _row(chosen, trial, record) for trial, record in zip(trials, records, strict=True)

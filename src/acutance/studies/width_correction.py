@@ -252,11 +252,12 @@ def _findings(options: WidthCorrectionOptions, table: Table) -> tuple[Finding, .
         )
         for name, words in (("published", "the smoothest curve"), ("ours", "the joint fit")):
             width, std = float(row[f"{name}_width_m"]), float(row[f"{name}_width_std_m"])
+            scatter = f" ± {std:.3f}" if math.isfinite(std) else ""
             found.append(
                 Finding(
                     f"{name}_width_{case.date}_m",
                     width,
-                    f"{case.date}: {words} finds {width:.3f} ± {std:.3f} m at SNR {case.snr:g}",
+                    f"{case.date}: {words} finds {width:.3f}{scatter} m at SNR {case.snr:g}",
                     case.corrected_m,
                 )
             )

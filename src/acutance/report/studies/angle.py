@@ -49,6 +49,10 @@ def angle_figure(result: StudyResult) -> Figure:
         left, right = figure.subplots(1, 2)
         _draw_values(left, result.table, result.tables["trials"])
         _draw_terms(right, result.table)
+        if len(result.table) == 1:
+            # A line through one point is not seen.
+            for line in (*left.lines, *right.lines):
+                line.set_marker("o")
         return figure
 
 

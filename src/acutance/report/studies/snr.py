@@ -39,7 +39,7 @@ def snr_figure(result: StudyResult) -> Figure:
             trials = result.tables["trials"].where(target=target)
             _draw_values(axes[0, column], trials["snr"], trials, float(levels["truth"][0]))
             _draw_errors(axes[1, column], levels, result.options.limit_percent)
-            _mark_minimum(axes[1, column], result, f"minimum_snr_{target}_")
+            _mark_minimum(axes[1, column], result, levels, f"minimum_snr_{target}_")
             size = result.options.width_px
             kind = "Edge" if target == "edge" else f"Pulse of {size:g} px"
             dark, bright = getattr(result.options, f"{target}_dn")
@@ -69,7 +69,7 @@ def ground_noise_figure(result: StudyResult) -> Figure:
         snr = np.array([by_difference[d] for d in trials["pulse_dn"] - trials["ground_dn"]])
         _draw_values(axes[0], snr, trials, float(table["truth"][0]))
         _draw_errors(axes[1], table, result.options.limit_percent)
-        _mark_minimum(axes[1], result, "minimum_snr_")
+        _mark_minimum(axes[1], result, table, "minimum_snr_")
         runs, contrasts = result.options.runs, len(result.options.levels_dn)
         axes[0].set_title(f"Pulse on uneven ground: {contrasts} contrasts, {runs} runs each")
         axes[1].set_xlabel("SNR")
@@ -139,7 +139,7 @@ def _draw_errors(axes: Axes, levels: Table, limit_percent: float) -> None:
     axes.minorticks_off()
 
 
-def _mark_minimum(axes: Axes, result: StudyResult, prefix: str) -> None:
+def _mark_minimum(axes: Axes, result: StudyResult, levels: Table, prefix: str) -> None:
     """Where each estimator comes below the limit."""
     found = {one.name: one.value for one in result.findings}
     limit_percent = result.options.limit_percent
@@ -147,6 +147,8 @@ def _mark_minimum(axes: Axes, result: StudyResult, prefix: str) -> None:
         snr, answer = found.get(f"{prefix}{name}"), "refused"
         if snr is not None:
             answer = f"SNR {snr:.0f}" if np.isfinite(snr) else "not reached"
+            if snr == levels["snr"].min():
+                answer = f"at most {answer}"
             axes.axvline(snr, color=ESTIMATOR_COLORS[name], linewidth=1, dashes=(2, 2))
         # Errors fall with the SNR: the upper right corner is free of curves.
         axes.text(
