@@ -26,6 +26,8 @@ __all__ = ["SharedEffect", "crossed_mean"]
 
 _SMALLEST: Final = 1e-3
 """Relative singular value below which two groupings are the same to the data."""
+_DENSE: Final = 8
+"""Places of a table for each number, up to which it is filled and not sorted."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,6 +76,7 @@ def crossed_mean(value: Floats, effects: Sequence[SharedEffect]) -> tuple[float,
     """
     effects = _distinct(effects)
     weight = _weights(effects)
+    crossings = [[_crossing(row, column, weight) for column in effects] for row in effects]
     mean = float(weight @ value)
     square = np.array([
         float((_sums(one, weight * (value - mean)) ** 2).sum()) for one in effects
@@ -81,12 +84,11 @@ def crossed_mean(value: Floats, effects: Sequence[SharedEffect]) -> tuple[float,
     total = [_sums(one, weight) for one in effects]
     own = np.array([float((one**2).sum()) for one in total])
     expected = np.array([
-        [_expected_square(row, column, weight, np.ones(column.size)) for column in effects]
-        for row in effects
+        [one.expected_square(np.ones(one.of_column.size)) for one in row] for row in crossings
     ])  # fmt: skip
     stated = np.array([
-        sum(_expected_square(row, column, weight, column.stated) for column in effects)
-        for row in effects
+        sum(one.expected_square(column.stated) for one, column in zip(row, effects, strict=True))
+        for row in crossings
     ])  # fmt: skip
     certain = sum(
         float(one.stated @ sums**2) for one, sums in zip(effects, total, strict=True)
@@ -94,8 +96,8 @@ def crossed_mean(value: Floats, effects: Sequence[SharedEffect]) -> tuple[float,
     share, components = _solved(expected, own, square - stated)
     variance = float(share @ (square - stated)) + certain
     degrees = np.array([
-        _degrees(sums, _cluster_variance(one, effects, weight, components))
-        for one, sums in zip(effects, total, strict=True)
+        _degrees(sums, _cluster_variance(row, effects, components))
+        for row, sums in zip(crossings, total, strict=True)
     ])  # fmt: skip
     parts = [
         StdPart(max(variance, 0.0) ** 0.5, _joined_degrees(share * square, degrees)),
@@ -122,7 +124,7 @@ def _distinct(effects: Sequence[SharedEffect]) -> list[SharedEffect]:
         if one.size < 2:
             continue
         for at, other in enumerate(found):
-            if one.size == other.size == _both(one, other)[0].size:
+            if one.size == other.size == np.unique(_codes(one, other)).size:
                 first = np.unique(one.label, return_index=True)[1]
                 stated = other.stated.copy()
                 stated[other.label[first]] += one.stated
@@ -133,10 +135,9 @@ def _distinct(effects: Sequence[SharedEffect]) -> list[SharedEffect]:
     return found
 
 
-def _both(one: SharedEffect, other: SharedEffect) -> tuple[NDArray[np.int64], NDArray[np.intp]]:
-    """Codes of the pairs of labels that occur, and the place of each number's pair."""
-    codes, index = np.unique(one.label * other.size + other.label, return_inverse=True)
-    return codes, index
+def _codes(row: SharedEffect, column: SharedEffect) -> NDArray[np.intp]:
+    """One number for the pair of labels of each of the n numbers."""
+    return np.asarray(row.label * column.size + column.label)
 
 
 def _weights(effects: Sequence[SharedEffect]) -> Floats:
@@ -150,19 +151,38 @@ def _weights(effects: Sequence[SharedEffect]) -> Floats:
     return np.asarray(weight / weight.sum())
 
 
-def _expected_square(
-    row: SharedEffect, column: SharedEffect, weight: Floats, variance: Floats
-) -> float:
-    """The sum of squares over the labels of `row` if only `column` scatters, by `variance`."""
-    codes, index = _both(row, column)
-    joint = np.bincount(index, weight)
-    at, other = codes // column.size, codes % column.size
-    of_row, of_column = _sums(row, weight), _sums(column, weight)
-    own = variance[other]
-    return float(
-        (own * joint * (joint - 2 * of_row[at] * of_column[other])).sum()
-        + (of_row**2).sum() * (variance @ of_column**2)
-    )
+@dataclass(frozen=True, eq=False)
+class _Crossing:
+    """Which labels of two effects, `row` and `column`, occur together, p pairs of them.
+
+    `at` and `other` are the labels of each pair, `weight` the weight of its numbers; `of_row` and
+    `of_column` the weight of each label.
+    """
+
+    at: NDArray[np.intp]
+    other: NDArray[np.intp]
+    weight: Floats
+    of_row: Floats
+    of_column: Floats
+
+    def expected_square(self, variance: Floats) -> float:
+        """The sum of squares over the row's labels if the column alone scatters, by `variance`."""
+        mixed = self.weight * (self.weight - 2 * self.of_row[self.at] * self.of_column[self.other])
+        common = (self.of_row**2).sum() * (variance @ self.of_column**2)
+        return float((variance[self.other] * mixed).sum() + common)
+
+
+def _crossing(row: SharedEffect, column: SharedEffect, weight: Floats) -> _Crossing:
+    codes = _codes(row, column)
+    table = row.size * column.size
+    if table <= _DENSE * codes.size:
+        pairs = np.flatnonzero(np.bincount(codes, minlength=table))
+        joint = np.asarray(np.bincount(codes, weight, table)[pairs], float)
+    else:
+        pairs, index = np.unique(codes, return_inverse=True)
+        joint = np.asarray(np.bincount(index, weight), float)
+    at, other = np.divmod(pairs, column.size)
+    return _Crossing(at, other, joint, _sums(row, weight), _sums(column, weight))
 
 
 def _solved(expected: Floats, own: Floats, square: Floats) -> tuple[Floats, Floats]:
@@ -174,17 +194,16 @@ def _solved(expected: Floats, own: Floats, square: Floats) -> tuple[Floats, Floa
 
 
 def _cluster_variance(
-    row: SharedEffect, effects: Sequence[SharedEffect], weight: Floats, components: Floats
+    crossings: Sequence[_Crossing], effects: Sequence[SharedEffect], components: Floats
 ) -> Floats:
-    """Variances of the means of the labels of `row`."""
-    found = np.zeros(row.size)
-    for column, component in zip(effects, components.tolist(), strict=True):
-        codes, index = _both(row, column)
-        joint = np.bincount(index, weight)
-        own = component + column.stated[codes % column.size]
-        found += np.bincount(codes // column.size, own * joint**2, row.size)
-    found /= _sums(row, weight) ** 2
-    return found if found.max() > 0 else np.ones(row.size)
+    """Variances of the means of the labels of a row of crossings."""
+    total = crossings[0].of_row
+    found = np.zeros(total.size)
+    for one, column, component in zip(crossings, effects, components.tolist(), strict=True):
+        own = component + column.stated[one.other]
+        found += np.bincount(one.at, own * one.weight**2, total.size)
+    found /= total**2
+    return found if found.max() > 0 else np.ones(total.size)
 
 
 def _degrees(weight: Floats, variance: Floats) -> float:
