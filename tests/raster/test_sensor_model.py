@@ -83,7 +83,10 @@ def test_an_image_in_sensor_geometry_has_the_gsd_of_its_middle(by_rpc):
     stated = read_statement(by_rpc.path).gsd_m
     assert stated.value == (gsd.row_m, gsd.col_m)
     assert stated.source == "rpc.tif: RPC or ground control points"
-    assert open_image(by_rpc.path, gsd_m=2.0).gsd().row_m == 2.0
+    assert not by_rpc.states_gsd
+    other = open_image(by_rpc.path, gsd_m=2.0)
+    assert other.gsd().row_m == 2.0
+    assert other.states_gsd
 
 
 def test_a_sensor_model_that_no_image_has_states_no_gsd(write_raster, pixels):

@@ -184,13 +184,8 @@ def _opened(task: BatchTask) -> _Opened:
     acquired = None if entry.acquired is None else entry.acquired.date()
     model = georeference_of(images[0])
     by_rpc = isinstance(model, SensorModel) and model.needs_height
-    facts = image_facts(statement, _has_gsd(images[0]))
+    facts = image_facts(statement, images[0].states_gsd)
     return _Opened(images, bands, statement, entry, acquired, stated.height_m, by_rpc, facts)
-
-
-def _has_gsd(image: Image) -> bool:
-    """Whether the pixels have a GSD without what documents state."""
-    return image.own_gsd is not None or image.geolocation is not None
 
 
 def _unreadable(task: BatchTask, error: AcutanceError) -> Entry:
@@ -311,7 +306,7 @@ def _placed(target: SurveyedTarget, image: Image, opened: _Opened) -> PlacedTarg
         _require_credible_gsd(image)
     stated = opened.entry.gsd_m
     gsd = None
-    if not _has_gsd(image) and stated is not None:
+    if not image.states_gsd and stated is not None:
         gsd = Gsd(*stated)
     return place_target(target, image, georeference, gsd)
 

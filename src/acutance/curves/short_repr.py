@@ -20,7 +20,7 @@ class ShortRepr:
 
     A class made from it has this representation instead of that of dataclasses, which writes out
     every array: its name, and its `summary`. Unless a class overrides it, this is its
-    fields, arrays by their shapes.
+    fields but those that are None, arrays by their shapes.
 
     Two of one class are equal when all their fields are, arrays element by element and ``nan``
     equal to ``nan``; so a result equals its pickled copy. Like arrays they have no hash. A copy
@@ -51,8 +51,9 @@ class ShortRepr:
 
     def summary(self) -> str:
         """What it is and its main numbers, in one line; nothing slow is computed for it."""
-        names = (field.name for field in fields(self))  # type: ignore[arg-type]
-        return ", ".join(f"{name} {_in_short(getattr(self, name))}" for name in names)
+        own = {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
+        known = {name: value for name, value in own.items() if value is not None}
+        return ", ".join(f"{name} {_in_short(value)}" for name, value in known.items())
 
 
 def _in_short(value: Any) -> str:

@@ -217,6 +217,15 @@ class Image(ShortRepr):
         return label_band(self.band, self.band_name)
 
     @property
+    def states_gsd(self) -> bool:
+        """Whether the caller, the file or its geotransform states the size of the pixels.
+
+        By a sensor model it can be told, too, and changes with the angle of view while the pixels
+        of the detector stay the same.
+        """
+        return self.own_gsd is not None or self.geolocation is not None
+
+    @property
     def crs(self) -> str | None:
         """The coordinate reference system as text ("EPSG:32631", WKT), or ``None``."""
         return None if self.geolocation is None else self.geolocation.crs

@@ -72,7 +72,7 @@ def require_match(
     OptionError
         If these are others; it says in what, and what to do.
     """
-    gsd, known = image.gsd(), filter.gsd_m
+    gsd, known = image.gsd() if image.states_gsd else None, filter.gsd_m
     if gsd is not None and known is not None:
         for own, measured in zip((gsd.row_m, gsd.col_m), known, strict=True):
             if not math.isclose(own, measured, rel_tol=_GSD_SHARE):

@@ -122,7 +122,7 @@ def _named(asked: str, names: Sequence[str], image: Image) -> int:
 
 def _of_geolocation(image: Image, name: str) -> Findings:
     """The GSD in the middle of the image, by its geotransform or as the file declares it."""
-    gsd = None if image.geolocation is None and image.own_gsd is None else image.gsd()
+    gsd = image.gsd() if image.states_gsd else None
     place = "geotransform" if image.own_gsd is None else "declared GSD"
     return _gsd_found(name, gsd, place)
 
