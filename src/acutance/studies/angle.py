@@ -189,12 +189,12 @@ def _predicted(options: AngleOptions, angle_deg: float) -> dict[str, float]:
 
 
 def _findings(table: Table) -> tuple[Finding, ...]:
-    angles = table["angle_deg"]
-    found, named = [], set()
-    for wanted in (6.0, 14.0):
-        known = np.isfinite(table["rest_percent"])
+    angles, named = table["angle_deg"], set()
+    known = np.isfinite(table["rest_percent"])
+    found = []
+    for wanted in (6.0, 14.0) if known.any() else ():
         i = int(np.argmin(np.where(known, np.abs(angles - wanted), np.inf)))
-        if not known.any() or angles[i] in named:
+        if angles[i] in named:
             continue
         named.add(angles[i])
         total = float(table["published_percent"][i])
@@ -211,7 +211,7 @@ def _findings(table: Table) -> tuple[Finding, ...]:
         )
     known = np.isfinite(table["published_percent"])
     if np.unique(angles[known]).size > 1:
-        intercept = _at_no_angle(angles, table["published_percent"])
+        intercept = _at_no_angle(angles[known], table["published_percent"][known])
         found.append(
             Finding(
                 "published_at_0_deg_percent",
@@ -229,6 +229,5 @@ def _findings(table: Table) -> tuple[Finding, ...]:
 
 def _at_no_angle(angles: Floats, percent: Floats) -> float:
     """The constant of a constant and a quadratic through the errors."""
-    known = np.isfinite(percent)
-    design = np.column_stack([np.ones_like(angles), angles**2])[known]
-    return float(np.linalg.lstsq(design, percent[known], rcond=None)[0][0])
+    design = np.column_stack([np.ones_like(angles), angles**2])
+    return float(np.linalg.lstsq(design, percent, rcond=None)[0][0])

@@ -26,8 +26,6 @@ __all__ = ["SharedEffect", "crossed_mean"]
 
 _SMALLEST: Final = 1e-3
 """Relative singular value below which two groupings are the same to the data."""
-_DENSE: Final = 8
-"""Places of a table for each number, up to which it is filled and not sorted."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,16 +171,11 @@ class _Crossing:
 
 
 def _crossing(row: SharedEffect, column: SharedEffect, weight: Floats) -> _Crossing:
-    codes = _codes(row, column)
-    table = row.size * column.size
-    if table <= _DENSE * codes.size:
-        pairs = np.flatnonzero(np.bincount(codes, minlength=table))
-        joint = np.asarray(np.bincount(codes, weight, table)[pairs], float)
-    else:
-        pairs, index = np.unique(codes, return_inverse=True)
-        joint = np.asarray(np.bincount(index, weight), float)
+    pairs, index = np.unique(_codes(row, column), return_inverse=True)
     at, other = np.divmod(pairs, column.size)
-    return _Crossing(at, other, joint, _sums(row, weight), _sums(column, weight))
+    joint = np.asarray(np.bincount(index, weight), float)
+    of_row, of_column = np.bincount(at, joint), np.bincount(other, joint)
+    return _Crossing(at, other, joint, np.asarray(of_row), np.asarray(of_column))
 
 
 def _solved(expected: Floats, own: Floats, square: Floats) -> tuple[Floats, Floats]:
