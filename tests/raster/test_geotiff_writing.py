@@ -99,6 +99,12 @@ def test_an_image_in_parts(tmp_path):
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["a.tif", "b.tif"]
 
 
+def test_fractions_are_rounded_in_a_type_of_integers(tmp_path):
+    array = np.random.default_rng(1).uniform(-0.4, 255.4, (100, 100)).astype(np.float32)
+    write_geotiff_tiles(tmp_path / "a.tif", array.shape, in_tiles(array), dtype=np.uint8)
+    np.testing.assert_array_equal(open_image(tmp_path / "a.tif").read(), np.rint(array))
+
+
 @pytest.mark.parametrize("error", [KeyboardInterrupt, ValueError, OSError])
 def test_parts_that_stop_to_come_leave_nothing_behind(tmp_path, error):
     """The error is that of the parts, and an older file stays."""

@@ -101,7 +101,7 @@ def write_geotiff_tiles(
         Every pixel once, in any order. Parts that begin and end at multiples of 256 pixels are
         compressed once.
     dtype : dtype_like, optional
-        The type that is written.
+        The type that is written. For one of integers fractions are rounded.
     transform, crs, nodata, gsd_m : optional
         As in `write_geotiff`.
 
@@ -235,6 +235,9 @@ def _tile(
             f"a part of shape {pixels.shape} was given for a box of {box.height} by {box.width} "
             "pixels: give (rows, columns) of that size"
         )
+    if stored.kind in "iu" and pixels.dtype.kind == "f":
+        # GDAL cuts fractions off: half a step darker in the mean.
+        pixels = np.rint(pixels)
     _require_values(pixels, stored)
     return pixels[np.newaxis]
 
