@@ -14,7 +14,9 @@ from acutance.scan.all_windows import scan_windows
 from acutance.scan.band_pieces import Unseen, band_pieces, in_band
 from acutance.scan.band_shift import band_shift
 from acutance.scan.edge_points import gradient
+from acutance.scan.scene import edges_seen
 from acutance.scan.scene_edges import SceneEdges
+from acutance.scan.sensor_fit import fit_sensor
 from acutance.scan.windows import Window
 
 SENSOR = simulate.reference_systems()["gaussian"]
@@ -62,7 +64,7 @@ def bands():
 
 @pytest.fixture(scope="module")
 def found(bands):
-    return ac.scan_bands(bands)
+    return ac.scan_bands(bands, workers=2)
 
 
 @pytest.fixture(scope="module")
@@ -95,6 +97,19 @@ def test_all_bands_have_the_same_edges(found, alone):
     for scene in found.measurements:
         number = scene.across.mtf_nyquist
         assert abs(number.value - expected) < 3 * number.std
+
+
+def test_a_band_whose_sensor_another_process_fits_is_the_same(bands, found):
+    images, options = [ac.Image.of(one) for one in bands], ac.ScanOptions()
+    box = Box.whole(images[1].shape)
+    windows = scan_windows(images, box, None, gsd=None, options=options)
+    edges, seen = edges_seen(images[1], box, options, [both[1] for both in windows])
+    here, there = fit_sensor(seen), found.scenes["2"].details
+    np.testing.assert_array_equal(edges.row, found.scenes["2"].edges.row)
+    assert [one.parameters.tolist() for one in here.combined.forms] == [
+        one.parameters.tolist() for one in there.combined.forms
+    ]
+    np.testing.assert_array_equal(here.member.mean_px, there.member.mean_px)
 
 
 def test_a_band_of_opposite_contrast_is_measured_and_placed_the_same(bands, found, few_forms):

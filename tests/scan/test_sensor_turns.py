@@ -88,6 +88,19 @@ def test_a_sensor_that_is_sharper_along_the_diagonals_is_found():
     assert all(one.apart < 0.02 for one in rivals)
 
 
+def test_several_processes_lead_to_the_same_sensor(monkeypatch):
+    """The second start leads to a likelier end, beside which the third is followed again."""
+    monkeypatch.setattr("acutance.scan.first_sensor._MOST_FOLLOWED", 3)
+    monkeypatch.setattr("acutance.scan.first_sensor._LIKELIER", -1e6)
+    monkeypatch.setattr("acutance.scan.first_sensor._WORTHWHILE_S", 0.0)
+    edges, normal_deg, guesses = half_soft(SHARPENED, 5, 64, 0.08)
+    one, tops, _ = first_sensor(edges, normal_deg, guesses)
+    other, same, _ = first_sensor(edges, normal_deg, guesses, workers=2)
+    assert len(tops) == len(same) > 0
+    for here, there in zip([one, *tops], [other, *same], strict=True):
+        np.testing.assert_array_equal(here.otf, there.otf)
+
+
 def test_turns_of_few_edges_reach_the_likeliest_sensor(monkeypatch):
     """Two or three edges of a direction are soft or ideal together.
 

@@ -10,7 +10,7 @@ import sys
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from concurrent.futures import Future, InvalidStateError, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack, contextmanager, suppress
@@ -192,7 +192,7 @@ def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
 
 def results_in_turn(
     work: Callable[[Task], Result], tasks: Iterable[Task], *, workers: int = 1
-) -> Iterator[Result]:
+) -> Generator[Result, None, None]:
     """The result of every task, in the order of the tasks, as soon as it is there.
 
     Tasks are taken as they are needed, and few results wait: memory stays flat however many there

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from numbers import Integral
 from typing import Any
 
@@ -14,15 +15,17 @@ from numpy.typing import ArrayLike, NDArray
 from acutance.arguments import require_all
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import FewEdgesError, ImageError, NoEdgeError
+from acutance.execution import results_in_turn
 from acutance.raster import Gsd, Image, open_bands
 from acutance.raster.band_label import label_band
 from acutance.scan.all_windows import Progress, answered_fit, part_of, scan_windows
 from acutance.scan.band_shift import BandShift, band_shift
 from acutance.scan.edge_table import EdgeTable
 from acutance.scan.options import ScanOptions
-from acutance.scan.scene import measured_scene
+from acutance.scan.scene import edges_seen, measured_scene
 from acutance.scan.scene_edges import SceneEdges
 from acutance.scan.scene_measurement import SceneMeasurement
+from acutance.scan.sensor_fit import EdgesSeen, SensorFit, fit_sensor
 from acutance.scan.stated_objects import gsd_of_part, require_statement
 from acutance.targets.options import chosen_options
 from acutance.targets.region import RoiLike
@@ -156,7 +159,7 @@ def scan_bands(
     workers, scheduler, keep : optional
         As of `acutance.scan_scene`.
     progress : function of (done, in all), optional
-        Of windows and then of bands, whose sensors are fitted one after the other.
+        Of windows and then of bands, whose sensors are fitted.
 
     Returns
     -------
@@ -187,25 +190,36 @@ def scan_bands(
         list(images.values()), box, region, gsd=gsd, options=chosen, workers=workers,
         scheduler=scheduler, keep=keep, progress=told,
     )  # fmt: skip
-    scenes: dict[str, SceneMeasurement] = {}
+    seen: dict[str, tuple[SceneEdges, EdgesSeen]] = {}
     rejected: list[Rejected] = []
     refused: dict[str, SceneEdges] = {}
     for place, (name, one) in enumerate(images.items()):
         try:
-            own = [windows[place] for windows in found]
-            with answered_fit(len(found), keep):
-                scenes[name] = measured_scene(one, box, gsd, chosen, own, region)
+            seen[name] = edges_seen(one, box, chosen, [windows[place] for windows in found])
         except FewEdgesError as error:
             rejected.append(Rejected("fit", str(error), _named(name, one)))
             refused[name] = error.edges
-        if told is not None:
-            told.band_is_done(len(found), place + 1)
+            if told is not None:
+                told.band_is_done(len(found), len(rejected))
+    scenes: dict[str, SceneMeasurement] = {}
+    with answered_fit(len(found), keep):
+        for (name, (edges, _)), fit in zip(seen.items(), _fits(seen, workers), strict=True):
+            scenes[name] = measured_scene(images[name], box, gsd, chosen, edges, fit, region)
+            if told is not None:
+                told.band_is_done(len(found), len(rejected) + len(scenes))
     if not scenes:
         whose = "the band" if len(images) == 1 else f"none of the {len(images)} bands"
         not_measured = "could not be measured" if len(images) == 1 else "could be measured"
         raise FewEdgesError(f"{whose} {not_measured}: {rejected[0].reason}", BandEdges(refused))
     shifts, unshifted = _shifts(scenes)
     return BandScenes(scenes, shifts, tuple(rejected), unshifted)
+
+
+def _fits(seen: Mapping[str, tuple[SceneEdges, EdgesSeen]], workers: int) -> Iterator[SensorFit]:
+    """The sensors of all bands in turn: several bands at once, or one on all processes."""
+    at_once = min(workers, len(seen))
+    fit = partial(fit_sensor, workers=1 if at_once > 1 else workers)
+    return results_in_turn(fit, [own for _, own in seen.values()], workers=at_once)
 
 
 @dataclass(frozen=True)

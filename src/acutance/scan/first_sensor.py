@@ -7,7 +7,9 @@ followed to their ends (`acutance.scan.sensor_turns`); some of many edges decide
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Sequence
+from functools import partial
 from itertools import product
 from typing import Final, NamedTuple
 
@@ -15,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
+from acutance.execution import results_in_turn
 from acutance.scan.blur_modes import (
     ALL_AROUND,
     COMMON_MODES,
@@ -51,6 +54,8 @@ _FAR: Final = 10.0
 likelier sensor in the end lay behind by 5 at most (benchmarks/scenes.py, twenty scenes)."""
 _FREE_PX2: Final = 0.1
 """Prior standard deviation of the modes by which first guesses may change."""
+_WORTHWHILE_S: Final = 5.0
+"""Other processes take some seconds of a core until they begin."""
 
 
 class Rival(NamedTuple):
@@ -69,7 +74,7 @@ class Rival(NamedTuple):
 
 
 def first_sensor(
-    edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats]
+    edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats], workers: int = 1
 ) -> tuple[SensorState, tuple[SensorState, ...], tuple[Rival, ...]]:
     """The likeliest sensor to which guesses lead, others nearly as likely, and further rivals.
 
@@ -82,9 +87,11 @@ def first_sensor(
         Mean direction of every bin.
     guesses : sequence of (b, 2 k) arrays
         First guesses of the OTF in every direction, real parts first.
+    workers : int, optional
+        Processes that follow guesses, if that takes long; the sensor is the same.
     """
     some = some_of_each(edges.bin)
-    best, *others = _ends(edges.chosen(some), normal_deg, guesses)
+    best, *others = _ends(edges.chosen(some), normal_deg, guesses, workers)
     if some.size < edges.size and best.combined is not None:
         # So many edges stand behind each that chose.
         rivals = _rivals(best, others, edges.size / some.size, edges.freq_cpp)
@@ -124,24 +131,38 @@ def some_of_each(number: NDArray[np.intp]) -> NDArray[np.intp]:
 
 
 def _ends(
-    edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats]
+    edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats], workers: int
 ) -> list[SensorState]:
     """Sensors to which the guesses lead, or led until they were given up; the likeliest first."""
-    nothing = np.zeros_like(edges.gain)
     least = _APART * min(1.0, math.sqrt(edges.size / _MANY))
     starts = _different(_starts(edges, normal_deg, guesses), least, edges.freq_cpp)
     first, *others = starts[:_MOST_FOLLOWED]
-    best = settled(edges, normal_deg, first, nothing)
+    began = time.perf_counter()
+    best = settled(edges, normal_deg, first, np.zeros_like(edges.gain))
+    is_long = len(others) * (time.perf_counter() - began) > _WORTHWHILE_S
     ends = [best]
-    for start in others:
-        start = start._replace(combined=best.combined)
-        end = settled(edges, normal_deg, start, nothing, best)
-        if apart(end.otf, best.otf, edges.freq_cpp) < SAME:
-            continue
-        ends.append(end)
-        if end.log_likelihood > best.log_likelihood + _LIKELIER:
-            best = end
+    while others:
+        # Each is followed beside the best one of those before it.
+        follow = partial(_followed, edges, normal_deg, best)
+        found = results_in_turn(follow, others, workers=min(workers, len(others)) if is_long else 1)
+        for end in found:
+            others = others[1:]
+            if apart(end.otf, best.otf, edges.freq_cpp) < SAME:
+                continue
+            ends.append(end)
+            if end.log_likelihood > best.log_likelihood + _LIKELIER:
+                best = end
+                break
+        found.close()
     return [best, *(one for one in ends if one is not best)]
+
+
+def _followed(
+    edges: EdgeLikelihoods, normal_deg: Floats, rival: SensorState, start: SensorState
+) -> SensorState:
+    """The end of a start, in the forms of a rival, too."""
+    start = start._replace(combined=rival.combined)
+    return settled(edges, normal_deg, start, np.zeros_like(edges.gain), rival)
 
 
 def _different(some: Sequence[SensorState], least: float, freq_cpp: Floats) -> list[SensorState]:

@@ -12,7 +12,6 @@ from acutance.curves import Estimate, Otf2d
 from acutance.curves.grid import Floats
 from acutance.errors import FewEdgesError, NoDataError
 from acutance.geometry.angles import axis_difference
-from acutance.numerics.one_thread import one_thread
 from acutance.raster import Box, Gsd, Image, Region, open_image
 from acutance.scan.all_windows import Progress, answered_fit, part_of, scan_windows
 from acutance.scan.band_pieces import UNSEEN
@@ -24,16 +23,15 @@ from acutance.scan.left_out import left_out_by_reason
 from acutance.scan.options import ScanOptions
 from acutance.scan.scene_edges import SceneEdges
 from acutance.scan.scene_measurement import SceneMeasurement
-from acutance.scan.sensor_fit import SensorFit, fit_sensor
+from acutance.scan.sensor_fit import EdgesSeen, SensorFit, fit_sensor
 from acutance.scan.stated_objects import behind_objects, gsd_of_part, require_statement
 from acutance.scan.window_edges import UsedEdge, WindowEdges
 from acutance.scan.windows import windows
 from acutance.targets.options import chosen_options
 from acutance.targets.processing_checks import scene_processing_checks
-from acutance.targets.record import ImageInfo
 from acutance.targets.region import RoiLike, image_info, read_data
 
-__all__ = ["edges_of_scene", "measured_scene", "scan_scene"]
+__all__ = ["edges_of_scene", "edges_seen", "measured_scene", "scan_scene"]
 
 _MIN_EDGES = 8
 _REASONS = 3
@@ -68,8 +66,9 @@ def scan_scene(
         Ground sampling distance in metres, instead of the image's own.
     options : ScanOptions, optional
     workers : int, optional
-        Processes, each with its own windows. With more than one, a script has to guard its own
-        start by ``if __name__ == "__main__"``.
+        Processes, each with its own windows, and then with its own first guesses of the sensor,
+        where following them takes long; what is found is the same. With more than one, a script
+        has to guard its own start by ``if __name__ == "__main__"``.
     scheduler : str, optional
         Address of a dask scheduler ("tcp://host:8786"): its workers, which have to see the file
         under the same name, are used instead of processes.
@@ -116,7 +115,8 @@ def scan_scene(
     )  # fmt: skip
     own = [one for (one,) in found]
     with answered_fit(len(found), keep):
-        return measured_scene(source, box, gsd, chosen, own, region)
+        edges, seen = edges_seen(source, box, chosen, own)
+        return measured_scene(source, box, gsd, chosen, edges, fit_sensor(seen, workers), region)
 
 
 def edges_of_scene(image: Image) -> SceneEdges:
@@ -130,27 +130,18 @@ def edges_of_scene(image: Image) -> SceneEdges:
     return SceneEdges.of_rows([row for (window,) in found for row in window.rows])
 
 
-def measured_scene(
-    image: Image,
-    box: Box,
-    gsd: Gsd | None,
-    options: ScanOptions,
-    found: Sequence[WindowEdges],
-    region: Region | None = None,
-) -> SceneMeasurement:
-    """The sensor under the edges of all windows of a band.
+def edges_seen(
+    image: Image, box: Box, options: ScanOptions, found: Sequence[WindowEdges]
+) -> tuple[SceneEdges, EdgesSeen]:
+    """The edges of all windows of a band, and what those that are used say of the sensor.
 
     Parameters
     ----------
     image : Image
     box : Box
         The part that was scanned.
-    gsd : Gsd or None
-        Instead of the image's own.
     options : ScanOptions
     found : sequence of WindowEdges
-    region : Region, optional
-        In the part, where it is not all of the image.
 
     Raises
     ------
@@ -160,13 +151,57 @@ def measured_scene(
         If too few edges can be used, or all have one direction.
     """
     edges = SceneEdges.of_rows([row for window in found for row in window.rows])
-    used = [edge for window in found for edge in window.used]
     if not edges.size:
         _require_data(image, box, options)
-    fit = _fit(used, edges, image, box)
+    return edges, _seen([edge for window in found for edge in window.used], edges, image, box)
+
+
+def measured_scene(
+    image: Image,
+    box: Box,
+    gsd: Gsd | None,
+    options: ScanOptions,
+    edges: SceneEdges,
+    fit: SensorFit,
+    region: Region | None = None,
+) -> SceneMeasurement:
+    """The measurement of a band, whose sensor was fitted to its edges.
+
+    Parameters
+    ----------
+    image : Image
+    box : Box
+        The part that was scanned.
+    gsd : Gsd or None
+        Instead of the image's own.
+    options : ScanOptions
+    edges : SceneEdges
+    fit : SensorFit
+    region : Region, optional
+        In the part, where it is not all of the image.
+    """
     gsd = gsd_of_part(image, box, gsd)
     info = image_info(image, box, gsd, "" if region is None else region.name)
-    return _measurement(image, box, gsd, options, edges, fit, info)
+    known = edges.with_objects(fit.member.mean_px, fit.member.ideal)
+    field = Field(box.as_tuple(), *fit.field[:4])
+    sensor = behind_objects(fit.otf, options, gsd, fit.common_errors_px2)
+    transfer = Otf2d(field.mean_of(sensor), None if gsd is None else (gsd.row_m, gsd.col_m))
+    return SceneMeasurement(
+        kind="scene",
+        method="population",
+        transfer=transfer,
+        snr=float(np.median(edges.snr[edges.used])),
+        checks=check_scene(edges, fit, field, transfer, (image, box), info, options.limits),
+        image=info,
+        options=options.to_dict(),
+        edges=known,
+        field=field,
+        objects={name: Estimate(value, std, 0.0, 1.0) for name, (value, std) in fit.kinds.items()},
+        ideal_by_direction=fit.ideal_by_direction,
+        forms=fit.forms,
+        normal_deg_bins=tuple(fit.normal_deg.tolist()),
+        details=fit,
+    )
 
 
 def _require_data(image: Image, box: Box, options: ScanOptions) -> None:
@@ -182,9 +217,8 @@ def _require_data(image: Image, box: Box, options: ScanOptions) -> None:
     )
 
 
-@one_thread
-def _fit(used: Sequence[UsedEdge], edges: SceneEdges, image: Image, box: Box) -> SensorFit:
-    """The sensor and the objects.
+def _seen(used: Sequence[UsedEdge], edges: SceneEdges, image: Image, box: Box) -> EdgesSeen:
+    """What the used edges say.
 
     Raises
     ------
@@ -225,7 +259,7 @@ def _fit(used: Sequence[UsedEdge], edges: SceneEdges, image: Image, box: Box) ->
         )
     likelihoods = _likelihoods(used, number, axis_deg)
     x, y = field_places(box.as_tuple(), edges.row[edges.used], edges.col[edges.used])
-    return fit_sensor(likelihoods, normal_deg, sensor_guesses(used, normal_deg), x, y)
+    return EdgesSeen(likelihoods, normal_deg, sensor_guesses(used, normal_deg), x, y)
 
 
 def _common_reason(edges: SceneEdges) -> str:
@@ -262,34 +296,3 @@ def _likelihoods(
     for i, (one, rank) in enumerate(zip(used, ranks, strict=True)):
         root[i, :, :rank], value[i, :rank] = one.root, one.value
     return EdgeLikelihoods.of_roots(freq, root, value, ranks.astype(float), number, axis_deg)
-
-
-def _measurement(
-    image: Image,
-    box: Box,
-    gsd: Gsd | None,
-    options: ScanOptions,
-    edges: SceneEdges,
-    fit: SensorFit,
-    info: ImageInfo,
-) -> SceneMeasurement:
-    known = edges.with_objects(fit.member.mean_px, fit.member.ideal)
-    field = Field(box.as_tuple(), *fit.field[:4])
-    sensor = behind_objects(fit.otf, options, gsd, fit.common_errors_px2)
-    transfer = Otf2d(field.mean_of(sensor), None if gsd is None else (gsd.row_m, gsd.col_m))
-    return SceneMeasurement(
-        kind="scene",
-        method="population",
-        transfer=transfer,
-        snr=float(np.median(edges.snr[edges.used])),
-        checks=check_scene(edges, fit, field, transfer, (image, box), info, options.limits),
-        image=info,
-        options=options.to_dict(),
-        edges=known,
-        field=field,
-        objects={name: Estimate(value, std, 0.0, 1.0) for name, (value, std) in fit.kinds.items()},
-        ideal_by_direction=fit.ideal_by_direction,
-        forms=fit.forms,
-        normal_deg_bins=tuple(fit.normal_deg.tolist()),
-        details=fit,
-    )

@@ -18,6 +18,7 @@ import numpy as np
 
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
+from acutance.numerics.one_thread import one_thread
 from acutance.scan.blur_modes import COMMON_MODES, changed, edge_modes
 from acutance.scan.edge_likelihoods import EdgeLikelihoods
 from acutance.scan.field_fit import FieldFit, fit_field
@@ -36,7 +37,7 @@ from acutance.targets.combine.fit import CombinedFit, combine_curves
 from acutance.targets.combine.sensor_forms import SCENE_FORMS, SensorForm
 from acutance.targets.combine.weighted_forms import CombinedOtf
 
-__all__ = ["IdealShare", "SensorFit", "fit_sensor"]
+__all__ = ["EdgesSeen", "IdealShare", "SensorFit", "fit_sensor"]
 
 _SETTLED_GAIN: Final = 1e-3
 _MAX_FIELD_TURNS: Final = 4
@@ -160,14 +161,12 @@ def _share_of(weight: Floats, share: Floats, covariance: Floats) -> tuple[float,
     return float(weight @ share), min(std, _MOST_SHARE_STD)
 
 
-def fit_sensor(
-    edges: EdgeLikelihoods, normal_deg: Floats, guesses: Sequence[Floats], x: Floats, y: Floats
-) -> SensorFit:
-    """Fit the sensor of a scene.
+class EdgesSeen(NamedTuple):
+    """What the edges of a scene say of its sensor.
 
-    Parameters
+    Attributes
     ----------
-    edges : EdgeLikelihoods
+    likelihoods : EdgeLikelihoods
     normal_deg : (b,) array
         Mean direction of every bin.
     guesses : sequence of (b, 2 k) arrays
@@ -175,8 +174,27 @@ def fit_sensor(
     x, y : (n,) arrays
         Places of the edges, -1 to 1 over the field.
     """
+
+    likelihoods: EdgeLikelihoods
+    normal_deg: Floats
+    guesses: Sequence[Floats]
+    x: Floats
+    y: Floats
+
+
+@one_thread
+def fit_sensor(seen: EdgesSeen, workers: int = 1) -> SensorFit:
+    """Fit the sensor of a scene.
+
+    Parameters
+    ----------
+    seen : EdgesSeen
+    workers : int, optional
+        Processes that may be used; the fit is the same.
+    """
+    edges, normal_deg, guesses, x, y = seen
     modes = edge_modes(normal_deg, edges.freq_cpp)[:, :, :COMMON_MODES]
-    state, others, rivals = first_sensor(edges, normal_deg, guesses)
+    state, others, rivals = first_sensor(edges, normal_deg, guesses, workers)
     field = fit_field(state.along, state.otf, state.share, x, y)
     for _ in range(_MAX_FIELD_TURNS):
         if field.chance_constant > _CONSTANT or not field.amount.any():
@@ -188,21 +206,21 @@ def fit_sensor(
         before, field = field, fit_field(state.along, state.otf, state.share, x, y, field)
         if np.abs(field.log_gain - before.log_gain).max() < _SETTLED_GAIN:
             break
-    seen = state.along.turned(np.exp(field.log_gain))
-    member = fit_shares(seen, state.otf, state.share)
-    left = observed_information(seen, state.otf, member)
-    shared = integrate_shared_blur(seen, state.otf, member, modes, left)
+    along = state.along.turned(np.exp(field.log_gain))
+    member = fit_shares(along, state.otf, state.share)
+    left = observed_information(along, state.otf, member)
+    shared = integrate_shared_blur(along, state.otf, member, modes, left)
     tops = _other_tops(state, others, normal_deg, modes)
     otf = changed(state.otf, modes @ (shared.mean_px2 + tops.mean_px2))
-    member = fit_shares(seen, otf, member.share)
+    member = fit_shares(along, otf, member.share)
     # It is the mean already: a further step would follow what little is left of information.
     # And forms with a kernel have several optima: they begin where the turns ended.
     samples = otf_samples(normal_deg, edges.freq_cpp, otf.ravel(), left)
     return SensorFit(
         combine_curves([samples], forms=SCENE_FORMS, near=state.near),
         field, normal_deg, member, np.concatenate([shared.errors_px2, tops.errors_px2]),
-        compare_parts(seen, otf, member.share, x, y),
-        agreement_of_form(seen, otf, member),
+        compare_parts(along, otf, member.share, x, y),
+        agreement_of_form(along, otf, member),
         rivals, state.turns, state.settled,
     )  # fmt: skip
 
