@@ -254,8 +254,10 @@ _POINTS = {
 _PERIODIC = {
     "level": Question(
         "How well is the contrast before the sensor known?", "<=", 0.01,
-        "it scales the whole MTF: state the levels of wide patches of the same materials (dark and "
-        "bright), add a group of wide bars, or use a star with fewer cycles or a larger radius",
+        "it scales the whole MTF, and the intervals are wide: state the levels of wide patches of "
+        "the same materials (dark and bright), add a group of wide bars, or use a star with fewer "
+        "cycles or a larger radius",
+        severity="note", caution=0.2,
     ),
     "stated_levels": Question(
         "How far are the stated levels from those of the image, relative to their contrast?",

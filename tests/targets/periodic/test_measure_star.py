@@ -162,6 +162,7 @@ def test_without_levels_the_interval_widens_and_says_so():
     assert np.all(np.abs(error) < 3 * std)
     assert free.mean_mtf(0.3).std > 3 * stated.mean_mtf(0.3).std
     assert _names(free.failed_checks) == ["level"]
+    assert free.verdict.word == "usable"
 
 
 @pytest.mark.parametrize(
