@@ -130,15 +130,23 @@ def _require_spokes(solved: StarSolution, rings: Rings, wave: Wave) -> None:
     level = solved.otf.level
     largest = float(np.max(rings.modulation * level))
     undetermined = level < MIN_LEVEL_SIGMAS * solved.otf.level_std
-    if largest > MAX_RAISED * abs(level) or undetermined:
-        other = "sine" if wave == "square" else "square"
-        raise NoStarError(
-            f"the image's spokes have an amplitude of {largest:.4g}, and those of the fitted "
-            f"{wave} star of {solved.star.cycles} cycles {Estimate(level, solved.otf.level_std)}: "
-            f"no sensor makes the one of the other. The spokes may be a {other} wave (--wave "
-            f"{other}), or have another number of cycles: count them by eye, and state it "
-            "(cycles, --cycles)"
+    impossible = largest > MAX_RAISED * abs(level)
+    if not (impossible or undetermined):
+        return
+    other = "sine" if wave == "square" else "square"
+    why = "no sensor makes the one of the other. The"
+    if not impossible:
+        why = (
+            f"the coarsest that were used have {solved.reach_cpp[0]:.2g} c/px, and do not show it. "
+            "State the levels of wide patches of the same materials (dark and bright, --dark, "
+            "--bright), or use a star with fewer cycles or a larger radius; or the"
         )
+    raise NoStarError(
+        f"the image's spokes have an amplitude of {largest:.4g}, and those of the fitted "
+        f"{wave} star of {solved.star.cycles} cycles {Estimate(level, solved.otf.level_std)}: "
+        f"{why} spokes may be a {other} wave (--wave {other}), or have another number of "
+        "cycles: count them by eye, and state it (cycles, --cycles)"
+    )
 
 
 def _snr(solved: StarSolution, wave: Wave) -> float:
