@@ -135,3 +135,19 @@ def test_dark_pulses_have_an_snr_as_bright_ones():
 def test_a_limit_that_no_error_meets_is_refused(kind, limit):
     with pytest.raises(OptionError, match="it has to be above 0"):
         kind(limit_percent=limit)
+
+
+@pytest.mark.parametrize("changed", [{}, {"draws": 2}, {"limit_percent": 3.0}, {"angle_deg": 8.0}])
+def test_the_paper_s_numbers_stand_beside_its_own_settings_alone(changed):
+    options = SnrOptions(noise_dn=(5.0,), **({"draws": 1} | changed))
+    printed = study_snr(options, ALONE).finding("minimum_snr_edge_published").published
+    assert printed == (100.0 if {*changed} <= {"draws"} else None)
+
+
+def test_high_snr_is_no_word_for_the_highest_of_low_ones():
+    low = study_snr(SnrOptions(noise_dn=(20.0,), draws=1), ALONE)
+    assert low.finding("bias_edge_ours_percent").text.endswith(
+        "at the highest SNR that was tried, 50"
+    )
+    high = study_snr(SnrOptions(noise_dn=(5.0,), draws=1), ALONE)
+    assert high.finding("bias_edge_ours_percent").text.endswith("at high SNR")

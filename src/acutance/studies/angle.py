@@ -14,7 +14,7 @@ from acutance.curves.metrics import NYQUIST_CPP
 from acutance.errors import OptionError, PhaseError
 from acutance.optics import Sensor, preset
 from acutance.simulate import pulse
-from acutance.studies.result import Finding, StudyResult
+from acutance.studies.result import Finding, StudyResult, printed_for
 from acutance.studies.table import Table
 from acutance.studies.targets import measure_published_pulse
 from acutance.studies.trials import Execution, Record, run_trials
@@ -112,7 +112,7 @@ def study_angle(
     )
     return StudyResult(
         "angle", "Angle of the target and the MTF at Nyquist", chosen, how.seed,
-        {"angle": table, "trials": measured}, _findings(table),
+        {"angle": table, "trials": measured}, _findings(chosen, table),
     )  # fmt: skip
 
 
@@ -188,8 +188,11 @@ def _predicted(options: AngleOptions, angle_deg: float) -> dict[str, float]:
     }
 
 
-def _findings(table: Table) -> tuple[Finding, ...]:
+def _findings(options: AngleOptions, table: Table) -> tuple[Finding, ...]:
     angles, named = table["angle_deg"], set()
+    printed = printed_for(
+        options, _PUBLISHED_AT_6_DEG_PERCENT, ("angles_deg", "places", "shape", "pulse_dn")
+    )
     known = np.isfinite(table["rest_percent"])
     found = []
     for wanted in (6.0, 14.0) if known.any() else ():
@@ -206,7 +209,7 @@ def _findings(table: Table) -> tuple[Finding, ...]:
                 f"published_at_{wanted:g}_deg_percent",
                 total,
                 f"at {angles[i]:g} deg the published estimator is {total:+.1f} % off: {parts} %",
-                _PUBLISHED_AT_6_DEG_PERCENT if angles[i] == 6.0 else None,
+                printed if angles[i] == 6.0 else None,
             )
         )
     known = np.isfinite(table["published_percent"])

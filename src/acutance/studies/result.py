@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from typing import Any
 
@@ -11,7 +11,7 @@ from acutance.errors import OptionError
 from acutance.optics import Sensor, describe_block
 from acutance.studies.table import Table
 
-__all__ = ["Finding", "StudyResult", "options_dict"]
+__all__ = ["Finding", "StudyResult", "options_dict", "printed_for"]
 
 
 @dataclass(frozen=True)
@@ -110,3 +110,29 @@ def options_dict(options: Any) -> Any:
     if isinstance(options, tuple | list):
         return [options_dict(one) for one in options]
     return options
+
+
+def printed_for(options: Any, number: float, free: Collection[str]) -> float | None:
+    """What the paper printed, where the options are those it was printed for.
+
+    Parameters
+    ----------
+    options : frozen dataclass
+        Whose defaults are the paper's parameters.
+    number : float
+        The printed one.
+    free : collection of str
+        Options that do not change what the number means.
+
+    Returns
+    -------
+    float or None
+        None where another option than those is not the paper's: the numbers are of two things.
+    """
+    of_paper = type(options)()
+    alike = all(
+        getattr(options, field.name) == getattr(of_paper, field.name)
+        for field in fields(options)
+        if field.name not in free
+    )
+    return number if alike else None

@@ -12,7 +12,7 @@ from acutance.arguments import require_types
 from acutance.errors import OptionError
 from acutance.optics import Sensor, preset
 from acutance.simulate import Noise, edge, pulse
-from acutance.studies.result import Finding, StudyResult
+from acutance.studies.result import Finding, StudyResult, printed_for
 from acutance.studies.scatter import error_columns, find_minimum, find_refusal, require_limit
 from acutance.studies.table import Cell, Table
 from acutance.studies.targets import (
@@ -31,6 +31,9 @@ Target = Literal["edge", "pulse"]
 _TARGETS: tuple[Target, ...] = ("edge", "pulse")
 _PUBLISHED_MINIMUM = {"edge": 100.0, "pulse": 50.0}
 """SNR the report requires (Figure 3.8)."""
+
+_NOT_PRINTED = ("noise_dn", "draws", "shape", "edge_dn", "pulse_dn")
+"""Options that do not change what the printed numbers mean."""
 
 _HIGH_SNR = 200.0
 """From here on the mean error counts as bias."""
@@ -182,21 +185,24 @@ def _answers(
 ) -> Iterator[Finding]:
     """What one estimator needs on one target, or why there is no answer."""
     who, limit = f"{target}, {ESTIMATOR_WORDS[name]}", options.limit_percent
+    printed = printed_for(options, _PUBLISHED_MINIMUM[target], _NOT_PRINTED)
     for refused in find_refusal(name, who, rows, trials):
         yield replace(refused, name=f"refused_{target}_{name}")
     yield from find_minimum(
         f"minimum_snr_{target}_{name}", f"{who}: an rms error below {limit:g} %", rows,
-        f"{name}_rms_percent", limit, _PUBLISHED_MINIMUM[target] if name == "published" else None,
+        f"{name}_rms_percent", limit, printed if name == "published" else None,
     )  # fmt: skip
     yield from find_minimum(
         f"minimum_snr_scatter_{target}_{name}",
         f"{who}: a scatter below {limit:g} %, whatever the bias,", rows,
         f"{name}_std_percent", limit,
     )  # fmt: skip
-    quiet = rows["snr"] >= min(_HIGH_SNR, float(rows["snr"].max()))
+    highest = float(rows["snr"].max())
+    quiet = rows["snr"] >= min(_HIGH_SNR, highest)
+    where = "high SNR" if highest >= _HIGH_SNR else f"the highest SNR that was tried, {highest:.0f}"
     biases = rows[f"{name}_bias_percent"][quiet]
     if np.isfinite(biases).any():
         bias = float(np.nanmean(biases))
         yield Finding(
-            f"bias_{target}_{name}_percent", bias, f"{who}: a bias of {bias:+.1f} % at high SNR"
+            f"bias_{target}_{name}_percent", bias, f"{who}: a bias of {bias:+.1f} % at {where}"
         )

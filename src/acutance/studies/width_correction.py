@@ -13,7 +13,7 @@ from acutance.curves.metrics import NYQUIST_CPP
 from acutance.errors import OptionError, TargetError
 from acutance.optics import Detector, Gaussian, Sensor
 from acutance.simulate import pulse
-from acutance.studies.result import Finding, StudyResult
+from acutance.studies.result import Finding, StudyResult, printed_for
 from acutance.studies.table import Cell, Table
 from acutance.studies.targets import ESTIMATORS, measure_published_pulse
 from acutance.studies.trials import Execution, Record, run_trials
@@ -247,7 +247,7 @@ def _findings(options: WidthCorrectionOptions, table: Table) -> tuple[Finding, .
                 change,
                 f"{case.date}: {case.stated_m:g} to {case.corrected_m:g} m changes the MTF at "
                 f"Nyquist by {change:+.2f} %",
-                case.percent,
+                printed_for(options, case.percent, ("cases", "draws", "angle_deg", "shape")),
             )
         )
         for name, words in (("published", "the smoothest curve"), ("ours", "the joint fit")):
