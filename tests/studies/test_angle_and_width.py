@@ -115,7 +115,8 @@ def test_one_angle_is_told_once_and_shown_and_has_no_quadratic():
     assert found.text.startswith("at 10 deg")
     assert found.published is None
     for axes in study_figure(result).axes:
-        assert {line.get_marker() for line in axes.lines} == {"o"}
+        shown = [*axes.lines, *axes.get_legend().get_lines()]
+        assert {(line.get_marker(), line.get_linestyle()) for line in shown} == {("o", "None")}
 
 
 def test_changes_of_the_width_are_those_from_the_nominal_one():

@@ -49,10 +49,12 @@ def angle_figure(result: StudyResult) -> Figure:
         left, right = figure.subplots(1, 2)
         _draw_values(left, result.table, result.tables["trials"])
         _draw_terms(right, result.table)
-        if len(result.table) == 1:
-            # A line through one point is not seen.
-            for line in (*left.lines, *right.lines):
-                line.set_marker("o")
+        for axes in (left, right):
+            if len(result.table) == 1:
+                # A line through one point is not seen.
+                for line in axes.lines:
+                    line.set(marker="o", linestyle="none")
+            axes.legend(loc="lower left")
         return figure
 
 
@@ -75,7 +77,6 @@ def _draw_values(axes: Axes, table: Table, trials: Table) -> None:
         xlabel="angle of the pulse [°]", ylabel="MTF at Nyquist",
         title="MTF at Nyquist without noise", ylim=(low - 0.012, high + 0.008),
     )  # fmt: skip
-    axes.legend(loc="lower left")
 
 
 def _draw_terms(axes: Axes, table: Table) -> None:
@@ -100,7 +101,6 @@ def _draw_terms(axes: Axes, table: Table) -> None:
         # An under-estimate leaves room for the legend by itself.
         ylim=(low - (0.12 if under else 0.8) * span, high + 0.1 * span),
     )  # fmt: skip
-    axes.legend(loc="lower left")
 
 
 def _range(*columns: Floats) -> tuple[float, float]:

@@ -22,6 +22,9 @@ ESTIMATOR_WORDS = {"published": "published (sdsu-2005)", "ours": "ours (spline)"
 _MARKERS = {"published": "*", "ours": "o"}
 _SIZES = {"published": 5.0, "ours": 3.2}
 
+_LONG_AXIS = 4.0
+"""Largest over smallest SNR of an axis from which a decade's ticks are three at least."""
+
 
 def snr_figure(result: StudyResult) -> Figure:
     """System noise, as Figure 3.8: every estimate over its SNR, and below it the rms error.
@@ -46,6 +49,7 @@ def snr_figure(result: StudyResult) -> Figure:
             axes[0, column].set_title(f"{kind}, {bright:g} on {dark:g} DN")
             axes[1, column].set_xlabel("SNR")
         _share_y(axes)
+        _plain_ticks(axes[1, 0])
         figure.suptitle(
             f"System noise at {result.options.angle_deg:g}°: {len(result.tables['trials'])} images",
             fontsize=12.5, fontweight="bold", x=0.01, ha="left",
@@ -73,6 +77,7 @@ def ground_noise_figure(result: StudyResult) -> Figure:
         runs, contrasts = result.options.runs, len(result.options.levels_dn)
         axes[0].set_title(f"Pulse on uneven ground: {contrasts} contrasts, {runs} runs each")
         axes[1].set_xlabel("SNR")
+        _plain_ticks(axes[1])
         return figure
 
 
@@ -93,7 +98,6 @@ def _draw_values(axes: Axes, snr: Floats, trials: Table, truth: float) -> None:
     axes.set(xscale="log", ylabel="MTF at Nyquist")
     axes.set_ylim(0.4 * truth, 1.6 * truth)
     _count_missing(axes, trials)
-    _plain_ticks(axes)
     legend = axes.legend(loc="lower right")
     for handle in legend.legend_handles:
         if handle is not None:
@@ -115,10 +119,12 @@ def _count_missing(axes: Axes, trials: Table) -> None:
 
 
 def _plain_ticks(axes: Axes) -> None:
-    """SNR in plain numbers on a logarithmic axis."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+    """SNR in plain numbers on a logarithmic axis that is drawn, evenly spread on a short one."""
+    from matplotlib.ticker import AutoLocator, FuncFormatter, LogLocator, NullFormatter
 
-    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    low, high = axes.get_xlim()
+    by_decade = LogLocator(subs=(1.0, 2.0, 3.0, 5.0, 7.0))
+    axes.xaxis.set_major_locator(by_decade if high > _LONG_AXIS * low else AutoLocator())
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.xaxis.set_minor_formatter(NullFormatter())
 
