@@ -5,6 +5,7 @@ import pytest
 from acutance import OptionError, Sensor
 from acutance.optics import Detector, Gaussian
 from acutance.studies import (
+    TABLE_3_3,
     AngleOptions,
     GroundNoiseOptions,
     MirrorPlanOptions,
@@ -46,3 +47,19 @@ def test_options_of_another_type_are_refused(kind, name, value):
     needed = {"sensor": SENSOR} if kind is MirrorPlanOptions else {}
     with pytest.raises(OptionError, match=rf"{kind.__name__}: {name} has to be .*, found"):
         kind(**(needed | {name: value}))
+
+
+@pytest.mark.parametrize(
+    ("kind", "levels"),
+    [
+        (SnrOptions, {"noise_dn": (5.0, 9.0, 5.0)}),
+        (GroundNoiseOptions, {"levels_dn": ((900.0, 600.0), (900.0, 600.0))}),
+        (AngleOptions, {"angles_deg": (6.0, 6.0)}),
+        (WidthOptions, {"widths_px": (2.9, 2.9)}),
+        (WidthCorrectionOptions, {"cases": (TABLE_3_3[0], TABLE_3_3[0])}),
+    ],
+)
+def test_a_level_that_is_named_twice_is_refused(kind, levels):
+    (name,) = levels
+    with pytest.raises(OptionError, match=rf"^{name} has .* more than once: name every level once"):
+        kind(**levels)

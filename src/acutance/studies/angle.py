@@ -15,6 +15,7 @@ from acutance.errors import OptionError, PhaseError
 from acutance.optics import Sensor, preset
 from acutance.simulate import pulse
 from acutance.studies.result import Finding, StudyResult, printed_for
+from acutance.studies.scatter import require_once
 from acutance.studies.table import Table
 from acutance.studies.targets import measure_published_pulse
 from acutance.studies.trials import Execution, Record, run_trials
@@ -62,6 +63,7 @@ class AngleOptions:
 
     def __post_init__(self) -> None:
         require_types(self)
+        require_once(angles_deg=self.angles_deg)
         angles_known = self.angles_deg and all(0 < angle <= 30 for angle in self.angles_deg)
         if not angles_known or self.places < 1:
             least, most = min(self.angles_deg, default=0.0), max(self.angles_deg, default=0.0)

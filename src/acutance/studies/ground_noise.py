@@ -12,7 +12,13 @@ from acutance.errors import OptionError
 from acutance.optics import Sensor, preset
 from acutance.simulate import GroundNoise, pulse
 from acutance.studies.result import Finding, StudyResult, printed_for
-from acutance.studies.scatter import error_columns, find_minimum, find_refusal, require_limit
+from acutance.studies.scatter import (
+    error_columns,
+    find_minimum,
+    find_refusal,
+    require_limit,
+    require_once,
+)
 from acutance.studies.table import Cell, Table
 from acutance.studies.targets import ESTIMATOR_WORDS, ESTIMATORS, Estimator, measure_both_pulses
 from acutance.studies.trials import Execution, Record, run_trials
@@ -71,6 +77,7 @@ class GroundNoiseOptions:
 
     def __post_init__(self) -> None:
         require_types(self)
+        require_once(levels_dn=self.levels_dn)
         if not self.levels_dn or self.runs < 1:
             raise OptionError(
                 f"levels_dn is {self.levels_dn} and runs is {self.runs}: there have to be a "

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -19,6 +20,7 @@ __all__ = [
     "find_refusal",
     "minimum_snr",
     "require_limit",
+    "require_once",
 ]
 
 
@@ -63,6 +65,25 @@ def require_limit(limit_percent: float) -> None:
         raise OptionError(
             f"limit_percent is {limit_percent:g}: no error stays below it, it has to be above 0"
         )
+
+
+def require_once(**levels: Sequence[object]) -> None:
+    """Refuse levels of which one is named twice: its images would be counted twice.
+
+    Parameters
+    ----------
+    **levels : sequence
+        By the option's name.
+
+    Raises
+    ------
+    OptionError
+        If one is there again.
+    """
+    for name, values in levels.items():
+        again = next((one for i, one in enumerate(values) if one in values[:i]), None)
+        if again is not None:
+            raise OptionError(f"{name} has {again} more than once: name every level once")
 
 
 def falling_fit(value: Floats) -> Floats:

@@ -13,7 +13,13 @@ from acutance.errors import OptionError
 from acutance.optics import Sensor, preset
 from acutance.simulate import Noise, edge, pulse
 from acutance.studies.result import Finding, StudyResult, printed_for
-from acutance.studies.scatter import error_columns, find_minimum, find_refusal, require_limit
+from acutance.studies.scatter import (
+    error_columns,
+    find_minimum,
+    find_refusal,
+    require_limit,
+    require_once,
+)
 from acutance.studies.table import Cell, Table
 from acutance.studies.targets import (
     ESTIMATOR_WORDS,
@@ -77,6 +83,7 @@ class SnrOptions:
 
     def __post_init__(self) -> None:
         require_types(self)
+        require_once(noise_dn=self.noise_dn)
         if not self.noise_dn or min(self.noise_dn) <= 0 or self.draws < 1:
             raise OptionError(
                 f"there are {len(self.noise_dn)} levels of noise, the least "

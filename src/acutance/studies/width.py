@@ -14,6 +14,7 @@ from acutance.errors import OptionError
 from acutance.optics import Sensor, preset
 from acutance.simulate import pulse
 from acutance.studies.result import Finding, StudyResult
+from acutance.studies.scatter import require_once
 from acutance.studies.table import Table
 from acutance.studies.targets import ESTIMATORS, measure_published_pulse
 from acutance.studies.trials import Execution, Record, run_trials
@@ -87,6 +88,7 @@ class WidthOptions:
 
     def __post_init__(self) -> None:
         require_types(self)
+        require_once(widths_px=self.widths_px)
         if not self.widths_px or min(*self.widths_px, self.nominal_px) <= 0:
             raise OptionError(
                 f"widths_px are {self.widths_px} and nominal_px is {self.nominal_px:g}: there has "

@@ -14,6 +14,7 @@ from acutance.errors import OptionError, TargetError
 from acutance.optics import Detector, Gaussian, Sensor
 from acutance.simulate import pulse
 from acutance.studies.result import Finding, StudyResult, printed_for
+from acutance.studies.scatter import require_once
 from acutance.studies.table import Cell, Table
 from acutance.studies.targets import ESTIMATORS, measure_published_pulse
 from acutance.studies.trials import Execution, Record, run_trials
@@ -84,6 +85,7 @@ class WidthCorrectionOptions:
 
     def __post_init__(self) -> None:
         require_types(self)
+        require_once(cases=[case.date for case in self.cases])
         if not self.cases or self.draws < 1:
             raise OptionError(
                 f"there are {len(self.cases)} cases and {self.draws} draws: at least one of each"
