@@ -73,6 +73,14 @@ def test_json_is_the_document_alone(acutance):
         ),
         (("snr", "--set", "pulse_dn=1,2,3"), "pulse_dn is 2 numbers, as in pulse_dn=100.0,1200.0"),
         (("snr", "--set", "draws=True"), "draws is a whole number, as in draws=10"),
+        (("snr", "--set", "draws=1", "--set", "draws=2"), "draws was set before: set it once"),
+        (("ground-noise", "--set", "ground=3"), "the options are angle_deg, ground.grains, ground"),
+        (("ground-noise", "--set", "ground.variance=-1"), "GroundNoise"),
+        (
+            ("ground-noise", "--set", "levels_dn=900"),
+            'several pairs of numbers, as in "levels_dn=(1100.0, 400.0),(1000.0',
+        ),
+        (("width-correction", "--set", "cases=3"), "the options are angle_deg, draws, gsd_m, sha"),
     ],
 )
 def test_what_makes_no_sense_is_refused(acutance, words, message):
@@ -80,6 +88,17 @@ def test_what_makes_no_sense_is_refused(acutance, words, message):
     assert done.exit_code == 2
     assert message in done.stderr
     assert done.stdout == ""
+
+
+def test_ground_and_a_pair_of_levels_can_be_typed(acutance):
+    done = acutance(
+        "study", "ground-noise", "--set", "ground.variance=400", "--set", "ground.grains=1,2",
+        "--set", "levels_dn=900,600", "--set", "runs=1", "--workers", 1, "--json",
+    )  # fmt: skip
+    document = json.loads(done.stdout)
+    assert document["options"]["levels_dn"] == [[900, 600]]
+    assert document["findings"][0]["text"].startswith("ground that varies by 28.3 DN")
+    assert document["options"]["ground"]["grains"] == [1, 2]
 
 
 def test_a_folder_that_is_a_file_is_refused(acutance, tmp_path):

@@ -153,7 +153,9 @@ def test_high_snr_is_no_word_for_the_highest_of_low_ones():
     assert high.finding("bias_edge_ours_percent").text.endswith("at high SNR")
 
 
-@pytest.mark.parametrize("noise_dn", [(20.0,), (20.0, 30.0), (10.0, 20.0), (5.0, 30.0), (2.0, 99.0)])
+@pytest.mark.parametrize(
+    "noise_dn", [(20.0,), (20.0, 30.0), (10.0, 20.0), (5.0, 30.0), (2.0, 99.0)]
+)
 def test_the_axis_of_the_snr_has_several_ticks(noise_dn):
     figure = study_figure(study_snr(SnrOptions(noise_dn=noise_dn, draws=1), ALONE))
     figure.canvas.draw()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable, Sequence
-from dataclasses import fields
+from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, get_args, get_origin, get_type_hints
 
@@ -59,7 +59,10 @@ def study(
     changes: Annotated[
         list[str] | None,
         typer.Option(
-            "--set", metavar="OPTION=VALUE", help="Another value than the paper's; repeatable."
+            "--set",
+            metavar="OPTION=VALUE",
+            help="Another value than the paper's, as draws=5; repeatable. An unknown option is "
+            "answered with all there are.",
         ),
     ] = None,
     seed: Annotated[int, typer.Option(metavar="N", min=0, help="Of the random numbers.")] = 2005,
@@ -106,32 +109,63 @@ def execution_of(
 
 def _options(kind: type[Any], changes: Sequence[str]) -> Any:
     """The study's options, changed as every ``--set OPTION=VALUE`` asks."""
-    known = {field.name for field in fields(kind)}
-    changed = {}
+    options = kind()
+    typed = _typed(options)
+    seen: set[str] = set()
     for text in changes:
         option, _, value = text.partition("=")
-        if option not in known:
-            raise OptionError(f"--set {text}: the options are {', '.join(sorted(known))}")
-        changed[option] = _value(option, value, text)
-    hints, defaults = get_type_hints(kind), kind()
-    for option, value in changed.items():
+        if option not in typed:
+            raise OptionError(f"--set {text}: the options are {', '.join(sorted(typed))}")
+        if option in seen:
+            raise OptionError(f"--set {text}: {option} was set before: set it once")
+        seen.add(option)
+        chosen = _value(option, value, text)
         if option != "sensor":
-            changed[option] = _checked(option, value, hints[option], getattr(defaults, option))
-    return kind(**changed)
+            chosen = _checked(option, chosen, *typed[option])
+        options = _with(options, option, chosen)
+    return options
+
+
+def _typed(options: Any, prefix: str = "") -> dict[str, tuple[Any, Any]]:
+    """Type and default of every option that can be typed, as ``ground.variance`` those of one.
+
+    Of several objects, as the cases of a table, none can be.
+    """
+    hints, typed = get_type_hints(type(options)), {}
+    for field in fields(options):
+        name, default = field.name, getattr(options, field.name)
+        if is_dataclass(default) and name != "sensor":
+            typed |= _typed(default, f"{prefix}{name}.")
+        elif not (isinstance(default, tuple) and is_dataclass(default[0])):
+            typed[f"{prefix}{name}"] = (hints[name], default)
+    return typed
+
+
+def _with(options: Any, option: str, value: Any) -> Any:
+    """The options with another value of one, or of an option of one."""
+    name, _, inner = option.partition(".")
+    return replace(
+        options, **{name: _with(getattr(options, name), inner, value) if inner else value}
+    )
 
 
 def _checked(option: str, value: Any, hint: Any, default: Any) -> Any:
     """A value of the type that an option has."""
     if isinstance(default, tuple):
         value = tuple(value) if isinstance(value, list | tuple) else (value,)
+        if _fits((value,), hint):
+            # A single pair of several.
+            value = (value,)
     if _fits(value, hint):
         return float(value) if hint is float else value
     wanted = _KINDS.get(type(default), "of another kind")
     if isinstance(default, tuple) and Ellipsis not in get_args(hint):
         wanted = f"{len(get_args(hint))} numbers"
-    raise OptionError(
-        f"--set {option}={value}: {option} is {wanted}, as in {option}={_as_typed(default)}"
-    )
+    example = f"{option}={_as_typed(default)}"
+    if isinstance(default, tuple) and isinstance(default[0], tuple):
+        # Shells read parentheses.
+        wanted, example = "several pairs of numbers", f'"{example}"'
+    raise OptionError(f"--set {option}={value}: {option} is {wanted}, as in {example}")
 
 
 def _fits(value: Any, hint: Any) -> bool:
