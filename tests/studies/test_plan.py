@@ -158,3 +158,19 @@ def test_a_plan_says_how_far_the_ground_has_to_be_level(target, beyond):
     assert room.value == pytest.approx(3 * fwhm_px)
     assert f"{room.value:.3g} px ({0.5 * room.value:.3g} m) of level ground" in room.text
     assert beyond in room.text
+
+
+def test_of_widths_whose_spectrum_is_zero_at_nyquist_the_better_one_is_planned():
+    result = plan_target(
+        PlanOptions(target="pulse", widths_px=(2.0, 4.0, 2.0), rows=(20,), draws=0)
+    )
+    assert result.table["target_width_px"][0] == 4.0
+    expected, _, planned = (one.text for one in result.findings[:3])
+    assert expected.endswith("the spectrum of such a pulse is zero there; choose another width")
+    assert "of the widths 2, 4 px, 4 px has the least bound of a known shape (none has" in planned
+
+
+def test_a_plan_without_a_bound_is_no_infinite_share_worse():
+    result = plan_target(PlanOptions(target="pulse", widths_px=(2.0,), rows=(20,), draws=0))
+    best = result.finding("best_target_width_px").text
+    assert best.endswith("within 10 % of it: 3 px; the plan has none")

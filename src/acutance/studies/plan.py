@@ -110,7 +110,8 @@ class PlanOptions:
         if not self.angles_deg or not all(0 < angle <= 30 for angle in self.angles_deg):
             raise OptionError(
                 f"angles_deg (--angle): {_listed(self.angles_deg)}; an edge without tilt has no "
-                "sub-pixel phases, and more than 30 degrees is not planned; 5 to 10 are best"
+                "sub-pixel phases, more than 30 degrees is not planned, and tilts the other way "
+                "are as good: give them without a sign; 5 to 10 are best"
             )
         if not self.widths_px or not all(
             MIN_WIDTH_PX <= width <= MAX_WIDTH_PX for width in self.widths_px
@@ -193,13 +194,18 @@ def _with_own(own: float, others: Sequence[float]) -> list[float]:
 
 
 def _planned_width(options: PlanOptions) -> float:
-    """Of several widths the one with the least bound of a free LSF, in pixels."""
+    """Of several widths the one with the least bound of a free LSF, in pixels.
+
+    Of those with none, whose spectrum is zero at Nyquist, the one with the least bound of a blur
+    of known shape.
+    """
     rows, angle = options.rows[0], options.angles_deg[0]
     blur = equivalent_blur(options.sensor, angle)
 
-    def bound(width: float) -> float:
+    def bound(width: float) -> tuple[float, float]:
         design = _wide_enough(Design("pulse", rows, angle, width), options.sensor)
-        return free_bound(blur, design, options.snr, options.window_px)
+        free = free_bound(blur, design, options.snr, options.window_px)
+        return free, shape_bound(blur, design, options.snr).mtf_nyquist
 
     several = len(options.widths_px) > 1 and options.target == "pulse"
     return min(options.widths_px, key=bound) if several else options.widths_px[0]
@@ -290,21 +296,29 @@ def _findings(options: PlanOptions, table: Table) -> tuple[Finding, ...]:
     rows = int(table["rows"][0])
     how = "rms error of our estimator" if simulated else "bound of a free LSF"
     width = float(table["target_width_px"][0])
-    across = "" if math.isnan(width) else f" {width:.3g} px wide"
+    across = "" if math.isnan(width) else f" of a pulse {width:.3g} px wide"
     design = f"{rows} rows{across} at {options.angles_deg[0]:g} deg and an SNR of {options.snr:g}"
     if math.isfinite(expected):
         answer = f"MTF at Nyquist: {expected:.4f} ({how}) from {design}"
+    elif math.isinf(expected):
+        answer = (
+            f"MTF at Nyquist: no number ({how}) from {design}: the spectrum of such a pulse is "
+            "zero there; choose another width"
+        )
     else:
         answer = f"MTF at Nyquist: no number ({how}) from {design}: choose another design"
     found = [Finding("expected_mtf_nyquist", expected, answer), _room(options)]
-    if len(options.widths_px) > 1 and options.target == "pulse":
-        listed = ", ".join(f"{one:.3g}" for one in options.widths_px)
+    widths = dict.fromkeys(options.widths_px)
+    if len(widths) > 1 and options.target == "pulse":
+        listed = ", ".join(f"{one:.3g}" for one in widths)
+        free = math.isfinite(float(table["mtf_nyquist_free"][0]))
+        least = "a free LSF" if free else "a known shape (none has one of a free LSF)"
         found.append(
             Finding(
                 "planned_width_px",
                 width,
-                f"plan: of the widths {listed} px, {width:.3g} px has the least bound of a free "
-                "LSF and is taken; name one alone to plan another",
+                f"plan: of the widths {listed} px, {width:.3g} px has the least bound of {least} "
+                "and is taken; name one alone to plan another",
             )
         )
     if options.accuracy is not None and math.isfinite(expected):
@@ -355,6 +369,8 @@ def _beside_plan(planned: float, errors: Floats, slack: float, simulated: bool) 
     excess = planned / float(np.nanmin(errors)) - 1
     if not excess > 0:
         return ""
+    if math.isinf(excess):
+        return "; the plan has none"
     if 1 + excess <= slack:
         chance = ": what is between them may be chance" if simulated else ""
         return f"; the plan is one of them{chance}"
