@@ -31,6 +31,11 @@ def test_simulation_lies_between_the_bounds(pulse):
     assert rows["width_px_rms"] == pytest.approx(rows["width_px_bound"], rel=0.5)
 
 
+def test_the_plan_names_what_a_measurement_will_state(pulse):
+    stated = pulse.table["mtf_nyquist_stated"][0]
+    assert f"our estimator, which states ± {stated:.4f}) from" in pulse.findings[0].text
+
+
 def test_the_plan_is_the_same_in_every_list(pulse):
     plans = [row for row in pulse.table.rows() if row["rows"] == 30 and row["angle_deg"] == 6.0]
     three = [row["mtf_nyquist_rms"] for row in plans if row["target_width_px"] == 3.0]

@@ -294,7 +294,11 @@ def _findings(options: PlanOptions, table: Table) -> tuple[Finding, ...]:
     kind = "mtf_nyquist_rms" if simulated else "mtf_nyquist_free"
     expected = float(table[kind][0])
     rows = int(table["rows"][0])
-    how = "rms error of our estimator" if simulated else "bound of a free LSF"
+    how = "bound of a free LSF"
+    if simulated:
+        stated = float(table["mtf_nyquist_stated"][0])
+        itself = f", which states ± {stated:.4f}" if math.isfinite(stated) else ""
+        how = f"rms error of our estimator{itself}"
     width = float(table["target_width_px"][0])
     across = "" if math.isnan(width) else f" of a pulse {width:.3g} px wide"
     design = f"{rows} rows{across} at {options.angles_deg[0]:g} deg and an SNR of {options.snr:g}"
