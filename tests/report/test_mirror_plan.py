@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 from acutance import optics
+from acutance.errors import OptionError
 from acutance.report import mirror_plan_text
 from acutance.studies import MirrorPlanOptions, plan_mirrors
 
@@ -54,3 +55,23 @@ def test_a_single_mirror_stands_in_one_column():
     plan = plan_mirrors(MirrorPlanOptions(SENSOR, count=1, draws=0))
     assert "1 mirror in 1 column\n  largest gap" in mirror_plan_text(plan)
     assert len(plan.layout.places_px) == 1
+
+
+def test_without_a_measured_image_there_is_no_number_and_it_is_said():
+    plan = plan_mirrors(MirrorPlanOptions(SENSOR, snr=2.0, draws=2))
+    assert plan.refused == 2
+    assert "none of 2 simulated images could be measured; raise the SNR" in mirror_plan_text(plan)
+    alone = plan_mirrors(MirrorPlanOptions(SENSOR, draws=0))
+    assert "to expect" not in mirror_plan_text(alone)
+
+
+def test_a_single_mirror_has_no_place_beside_others():
+    plan = plan_mirrors(MirrorPlanOptions(SENSOR, count=1, draws=2))
+    (place,) = (line for line in mirror_plan_text(plan).splitlines() if line.startswith("place ["))
+    assert place.split()[2:4] == ["–", "–"]
+    assert plan.std["position_px across"] > 0
+
+
+def test_a_single_simulated_image_has_no_scatter():
+    with pytest.raises(OptionError, match="a single simulated image has no scatter"):
+        MirrorPlanOptions(SENSOR, draws=1)

@@ -131,7 +131,29 @@ def test_the_simulation_can_refuse():
     plan = plan_target(PlanOptions(rows=(20,), angles_deg=(6.0,), snr=1.0, draws=2), ALONE)
     assert plan.table["refused"][0] == 2
     assert math.isnan(plan.finding("expected_mtf_nyquist").value)
-    assert [found.name for found in plan.findings] == ["expected_mtf_nyquist", "room_px"]
+    names = ["expected_mtf_nyquist", "refused", "room_px"]
+    assert [found.name for found in plan.findings] == names
+    assert "refused: 2 of 2 simulated images" in plan_text(plan)
+    assert "errors are those" not in plan_text(plan)
+
+
+def test_errors_of_the_images_that_are_left_say_how_many_were_refused():
+    options = PlanOptions(rows=(20, 30), angles_deg=(6.0, 7.0), snr=3.0, draws=6)
+    plan = plan_target(options, ALONE)
+    refused = int(plan.table["refused"][0])
+    assert 0 < refused < 6
+    said = plan_text(plan)
+    assert f"refused: {refused} of 6 simulated images of the plan could not be measured; " in said
+    assert "in 6 simulated images, without those refused." in said
+    (head, row) = (line.split() for line in said.splitlines() if line[:6] in ("varied", "  plan"))
+    assert (head[-1], row[-1]) == ("refused", str(refused))
+
+
+def test_a_plan_without_a_number_is_not_infinitely_worse():
+    plan = plan_target(PlanOptions(target="pulse", widths_px=(4.0,), draws=0), ALONE)
+    said = plan.finding("best_target_width_px").text
+    assert said.endswith("; that of the plan has no number")
+    assert "refused" not in plan_text(plan)
 
 
 @pytest.mark.parametrize(

@@ -88,7 +88,10 @@ def plan_mirrors(
         typer.Option(metavar="ERROR", help="Wanted for the MTF at Nyquist: how many images?"),
     ] = None,
     draws: Annotated[
-        int, typer.Option(metavar="N", min=0, help="Simulated images; 0 for the layout alone.")
+        int,
+        typer.Option(
+            metavar="N", min=0, help="Simulated images, 2 or more; 0 for the layout alone."
+        ),
     ] = 20,
     seed: Annotated[int, typer.Option(metavar="N", min=0, help="Of the random numbers.")] = 2005,
     workers: WorkersOption = None,

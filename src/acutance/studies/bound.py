@@ -16,7 +16,9 @@ window. For an edge
   shape), times what it does to the ratio of the spectra, ``M (pi f cot(pi w f) - 1 / w)``. A
   known shape is one of the free ones, so this bound is nowhere below the other.
 
-Estimators that use the smoothness of real LSFs come below the second bound, none below the first.
+Estimators that use the smoothness of real LSFs come below the second bound. Below the first come
+those alone that know more than the image shows, and only where its noise is strong: ours knows
+which LSFs sensors have.
 """
 
 from __future__ import annotations

@@ -122,10 +122,15 @@ class MirrorPlanOptions:
                 raise OptionError(f"{name} is {value:g}: it has to be {low:g} to {high:g}")
         if self.accuracy is not None and not 0 < self.accuracy < math.inf:
             raise OptionError(f"accuracy is {self.accuracy:g}: it has to be finite and above 0")
-        if self.accuracy is not None and self.draws < 2:
+        if self.draws == 1:
             raise OptionError(
-                f"accuracy (--accuracy) is answered by simulated images, and draws (--draws) is "
-                f"{self.draws}: give 2 or more"
+                "draws (--draws) is 1: a single simulated image has no scatter; give 2 or more, or "
+                "0 for the layout alone"
+            )
+        if self.accuracy is not None and self.draws == 0:
+            raise OptionError(
+                "accuracy (--accuracy) is answered by simulated images, and draws (--draws) is 0: "
+                "give 2 or more"
             )
         self._require_columns()
 
@@ -309,11 +314,8 @@ def plan_mirrors(options: MirrorPlanOptions, execution: Execution | None = None)
     radius = 2 * math.sqrt(light * gsd_m * along_m * zenith / (math.pi * options.mirror))
     half = math.radians(0.5 * (options.sun_zenith_deg + options.view_zenith_deg))
     records = _simulated(options, execution or Execution(workers=1))
-    bias = {
-        name: mean
-        for name, mean in _by_name(records, np.mean).items()
-        if not name.startswith("position_px")
-    }
+    means = _by_name(records, np.mean)
+    bias = {name: mean for name, mean in means.items() if not name.startswith("position_px")}
     return MirrorPlan(
         options, layout, radius, 2 * radius * math.sin(half), share,
         std=_by_name(records, np.mean, stated=True), scatter=_by_name(records, _rms), bias=bias,
@@ -364,7 +366,7 @@ def _draw(options: MirrorPlanOptions, _: int, rng: np.random.Generator) -> Recor
 
 
 def place_errors_px(found: Floats, places: Floats) -> Floats:
-    """Errors (k, 2) of measured places against the nearest true ones, minus their common shift.
+    """Errors (k, 2) of places against the nearest true ones, minus their shift; of one NaN.
 
     Parameters
     ----------
@@ -374,7 +376,7 @@ def place_errors_px(found: Floats, places: Floats) -> Floats:
     """
     away = np.linalg.norm(found[:, None] - places, axis=2)
     error = found - places[np.argmin(away, axis=1)]
-    return np.asarray(error - error.mean(axis=0))
+    return np.asarray(error - (error.mean(axis=0) if len(error) > 1 else math.nan))
 
 
 def _simulated(options: MirrorPlanOptions, execution: Execution) -> list[Record]:

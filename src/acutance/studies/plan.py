@@ -311,7 +311,10 @@ def _findings(options: PlanOptions, table: Table) -> tuple[Finding, ...]:
         )
     else:
         answer = f"MTF at Nyquist: no number ({how}) from {design}: choose another design"
-    found = [Finding("expected_mtf_nyquist", expected, answer), _room(options)]
+    found = [Finding("expected_mtf_nyquist", expected, answer)]
+    if refused := int(table["refused"][0]):
+        found.append(_refused(refused, options.draws))
+    found.append(_room(options))
     widths = dict.fromkeys(options.widths_px)
     if len(widths) > 1 and options.target == "pulse":
         listed = ", ".join(f"{one:.3g}" for one in widths)
@@ -352,6 +355,16 @@ def _findings(options: PlanOptions, table: Table) -> tuple[Finding, ...]:
     return tuple(found)
 
 
+def _refused(refused: int, draws: int) -> Finding:
+    """How many images of the plan gave no number: errors are those of the others alone."""
+    others = "; errors are those of the others" if refused < draws else ""
+    text = (
+        f"refused: {refused} of {draws} simulated images of the plan could not be measured{others}"
+        ": raise the SNR, or the rows"
+    )
+    return Finding("refused", refused, text)
+
+
 def _room(options: PlanOptions) -> Finding:
     """How far the ground has to be level beside the target."""
     angle = options.angles_deg[0]
@@ -370,6 +383,8 @@ def _beside_plan(planned: float, errors: Floats, slack: float, simulated: bool) 
 
     What was simulated is by chance in part, and bounds are not.
     """
+    if not math.isfinite(planned):
+        return "; that of the plan has no number"
     excess = planned / float(np.nanmin(errors)) - 1
     if not excess > 0:
         return ""

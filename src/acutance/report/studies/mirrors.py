@@ -89,7 +89,8 @@ def _metres(length_m: float) -> str:
 def _expected(plan: MirrorPlan) -> str:
     bound = f"{plan.position_std_px:.4f}"
     if not plan.std:
-        return f"place of a mirror at SNR {plan.options.snr:g}: no better than ± {bound} px"
+        place = f"place of a mirror at SNR {plan.options.snr:g}: no better than ± {bound} px"
+        return f"{place}{_none_measured(plan)}"
     rows: list[tuple[str, ...]] = [
         ("to expect", "error (rms)", "", "of it bias", "", "std stated", ""),
         ("", *("across", "along") * 3),
@@ -106,6 +107,16 @@ def _expected(plan: MirrorPlan) -> str:
         align_columns(rows, "lrrrrrr", indent="")
         + f"\n  at SNR {plan.options.snr:g}, {plan.options.draws} simulated images{refused}; "
         f"places no better than ± {bound} px" + _narrow(plan) + _biased(plan)
+    )
+
+
+def _none_measured(plan: MirrorPlan) -> str:
+    """That no error can be told, where every simulated image was refused."""
+    if not plan.refused:
+        return ""
+    return (
+        f"\nto expect: no number: none of {plan.refused} simulated images could be measured; raise "
+        "the SNR"
     )
 
 

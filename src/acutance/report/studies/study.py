@@ -76,6 +76,8 @@ def plan_text(result: StudyResult) -> str:
     simulated = result.options.draws > 1
     if not simulated:
         head = {name: words for name, words in head.items() if not name.endswith("_rms")}
+    elif table["refused"].any():
+        head["refused"] = "refused"
     rows = [list(head.values())]
     for row in table.rows():
         rows.append([_cell(name, row[name]) for name in head])
@@ -89,9 +91,10 @@ def plan_text(result: StudyResult) -> str:
         f"of known shape, both with a fitted line{' and width' if is_pulse else ''}."
     ]
     if simulated:
+        refusals = ", without those refused" if "refused" in head else ""
         caption.append(
             f"MTF, RER, FWHM{', found' if is_pulse else ''}: rms error of our estimator in "
-            f"{result.options.draws} simulated images."
+            f"{result.options.draws} simulated images{refusals}."
         )
     return "\n".join([study_text(result), _sensor_line(result), "", *lines, "", *caption])
 
@@ -112,4 +115,4 @@ def _cell(name: str, value: float | int | str) -> str:
         return "-"
     if name.endswith(("_rms", "_bound", "_free")):
         return f"{value:.4f}"
-    return f"{value:g}" if name == "rows" else f"{value:.2f}"
+    return f"{value:g}" if name in ("rows", "refused") else f"{value:.2f}"
