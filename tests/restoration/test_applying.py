@@ -615,6 +615,22 @@ def test_an_image_without_data_is_not_written(tmp_path, sharpening):
     assert [one.name for one in tmp_path.iterdir()] == ["a.npy"]
 
 
+@pytest.mark.parametrize("ending", ["tif", "npy"])
+def test_an_image_of_saturated_pixels_alone_is_not_written(tmp_path, sharpening, ending):
+    image = np.full((60, 60), 500, np.uint16)
+    image[:20] = 0
+    if ending == "tif":
+        write(tmp_path / "a.tif", image)
+    else:
+        np.save(tmp_path / "a.npy", image)
+    with pytest.raises(ac.NoDataError, match="that has data is saturated: nothing was written"):
+        ac.restore(
+            tmp_path / f"a.{ending}", sharpening, out=tmp_path / f"b.{ending}", nodata=0,
+            saturation=300,
+        )  # fmt: skip
+    assert [one.name for one in tmp_path.iterdir()] == [f"a.{ending}"]
+
+
 def test_what_was_not_compared_is_told(tmp_path, landscape, sharpening):
     image = np.rint(landscape).astype(np.uint16)
     write(tmp_path / "a.tif", np.stack([image] * 3))

@@ -181,7 +181,9 @@ def test_an_mtf_that_reaches_zero_is_told():
     [
         ({"noise_gain": 2.0, "overshoot": 0.05}, "each of them determines"),
         ({"noise_gain": 50.0}, "reach 0.0[0-9] to"),
-        ({"mtf_nyquist": 0.95}, "choose a value between"),
+        ({"mtf_nyquist": 0.95}, r"choose a value between them, or the sharper aim"),
+        ({"mtf_nyquist": 0.95, "desired": "point"}, "choose a value between them$"),
+        ({"noise_gain": 0.01}, "choose a value between them$"),
         ({"overshoot": 3.0}, "reach"),
         ({"noise_gain": -1.0}, "above 0"),
         ({"noise_gain": float("nan")}, "finite"),

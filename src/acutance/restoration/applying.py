@@ -147,7 +147,8 @@ def restore(
     ImageError
         If the image cannot be read or the new one not be written.
     NoDataError
-        If no pixel of a file has data; an array without any, the tile of an image, stays so.
+        If no pixel of a file has data, or all that have are saturated; an array of such pixels,
+        the tile of an image, stays as it is.
     """
     require_filter(filter)
     require_nodata(nodata)
@@ -319,11 +320,17 @@ def _require_data(counts: dict[int, PixelCounts], image: Image) -> None:
     Raises
     ------
     NoDataError
-        If no pixel of any band has data.
+        If no pixel of any band has data, or all that have are saturated.
     """
     whole = image.shape[0] * image.shape[1]
-    if all(one.pixels == one.nodata == whole for one in counts.values()):
-        raise NoDataError(f"no pixel of {image.path} has data: nothing was written")
+    if any(one.pixels != whole or one.nodata + one.saturated != whole for one in counts.values()):
+        return
+    if any(one.saturated for one in counts.values()):
+        raise NoDataError(
+            f"every pixel of {image.path} that has data is saturated: nothing was written; state "
+            "the stored value of saturated pixels (saturation, --saturation)"
+        )
+    raise NoDataError(f"no pixel of {image.path} has data: nothing was written")
 
 
 def _stored_type(

@@ -43,6 +43,8 @@ _CONTRAST = 0.2
 """Standard deviation of a natural scene, a share of the contrast that the SNR counts."""
 _USUAL_SNR = 100.0
 """Where no SNR is known, and none matters because a knob is turned."""
+_SHARPER = "the sharper aim (desired='point', --desired point)"
+
 _TARGET_WEIGHT = 0.01
 """Of the noise, where a stated transfer is to be reached: it is missed by some 1 % at Nyquist."""
 _MISSED, _DEEP, _RINGING = 0.02, 0.02, 0.10
@@ -128,7 +130,8 @@ def design_restoration(
     expected = _scene(scene, known, own_snr, chosen)
     family = KernelFamily.of(known.otf.model, expected, size, _desired(desired, target))
     turned = Turned(family, known)
-    weight = _weight(knob, chosen, turned)
+    aims_at_pixels = desired == "pixel" and target is None
+    weight = _weight(knob, chosen, turned, _SHARPER if aims_at_pixels else "")
     return _described(turned, weight, chosen, knob, own_snr, expected, target)
 
 
@@ -204,10 +207,10 @@ def _desired(name: str, target: Sensor | Otf2d | None) -> Desired:
     return known_otf(target).otf.model.otf
 
 
-def _weight(knob: Knob | None, method: RestorationMethod, turned: Turned) -> float:
+def _weight(knob: Knob | None, method: RestorationMethod, turned: Turned, sharper: str) -> float:
     """The weight of the noise that the knob asks for; without one, that of the noise itself."""
     if knob is not None:
-        return weight_of(knob, turned)
+        return weight_of(knob, turned, sharper)
     return _TARGET_WEIGHT if method == "target" else 1.0
 
 

@@ -101,10 +101,17 @@ def worst_overshoot(responses: tuple[Response, ...]) -> float:
     return max(max(one.overshoot.value, one.undershoot.value) for one in responses)
 
 
-def weight_of(knob: Knob, turned: Turned) -> float:
+def weight_of(knob: Knob, turned: Turned, sharper: str = "") -> float:
     """The weight of noise whose kernel has the number asked for: the sharpest that has it.
 
     Overshoot does not always rise with sharpness: a kernel that smooths may overshoot too.
+
+    Parameters
+    ----------
+    knob : Knob
+    turned : Turned
+    sharper : str, optional
+        What else reaches more than these kernels, in words.
 
     Raises
     ------
@@ -115,7 +122,7 @@ def weight_of(knob: Knob, turned: Turned) -> float:
     values = np.array([turned.value(knob.name, float(weight)) for weight in from_smooth])
     reached = np.flatnonzero((values[:-1] < knob.value) & (values[1:] >= knob.value))
     if not reached.size:
-        raise OptionError(_out_of_reach(knob, values, turned.family.size))
+        raise OptionError(_out_of_reach(knob, values, turned.family.size, sharper))
     last = int(reached[-1])
     low, high = (math.log(float(from_smooth[i])) for i in (last + 1, last))
 
@@ -125,13 +132,13 @@ def weight_of(knob: Knob, turned: Turned) -> float:
     return math.exp(float(brentq(excess, low, high, xtol=1e-10)))
 
 
-def _out_of_reach(knob: Knob, values: Floats, size: int) -> str:
+def _out_of_reach(knob: Knob, values: Floats, size: int, sharper: str) -> str:
+    other = f", or {sharper}" if sharper and knob.value > values.max() else ""
     digits = 2 if knob.name == "noise_gain" else 4
     return (
         f"{_WORDS[knob.name]} of {knob.value:g} was requested, and kernels of {size} by {size} "
         f"pixels for this sensor reach {values.min():.{digits}f} to {values.max():.{digits}f}: "
-        "choose a value between them, or the sharper aim (desired='point', "
-        f"--desired point){_meant(knob)}"
+        f"choose a value between them{other}{_meant(knob)}"
     )
 
 

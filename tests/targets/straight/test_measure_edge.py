@@ -267,6 +267,11 @@ class TestRefusals:
         with pytest.raises(ac.PhaseError, match=r"sample phases over .* rows.*use a region of"):
             ac.measure_edge(image)
 
+    def test_too_few_phases_do_not_print_as_enough(self, monkeypatch):
+        monkeypatch.setattr("acutance.targets.straight.edge.sample_phases", lambda _: 1.49)
+        with pytest.raises(ac.PhaseError, match=r"gives 1\.4 sample phases .* least 1\.5 are"):
+            ac.measure_edge(simulated(angle_deg=0.3)[0])
+
     def test_phases_needed_and_wanted_are_those_of_the_code_and_the_check(self):
         image, _ = simulated(angle_deg=0.3)
         with pytest.raises(ac.PhaseError, match=r"1\.5 are needed and 3 wanted: use a region"):

@@ -255,8 +255,10 @@ def require_phases(trimmed: EdgePixels, line: Line, wanted: float) -> None:
         return
     fill = _fill_value(distance, trimmed.pixels.value)
     wanted = max(wanted, MIN_PHASES)
+    # Rounded down: what is too few does not print as enough.
+    below = math.floor(10 * phases) / 10
     raise PhaseError(
-        f"edge angle {line.angle_deg:.2f} deg gives {phases:.1f} sample phases over "
+        f"edge angle {line.angle_deg:.2f} deg gives {below:.1f} sample phases over "
         f"{line.length_px:.0f} rows, at least {MIN_PHASES:g} are needed and {wanted:g} wanted: "
         + (_advice(line, wanted) if fill is None else _fill_advice(fill))
     )
