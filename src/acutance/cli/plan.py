@@ -170,7 +170,7 @@ def _widths(
     """Widths in pixels along the normal of the planned angle, whose GSD they are divided by."""
     if width_px is not None and width_m is not None:
         raise OptionError("--width-px and --width-m were both given: give one of them")
-    from acutance.studies.plan import MAX_WIDTH_PX, MIN_WIDTH_PX
+    from acutance.studies.plan_options import MAX_WIDTH_PX, MIN_WIDTH_PX
 
     if width_m is None:
         return parse_numbers("--width-px", width_px or "3")

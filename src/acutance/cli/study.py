@@ -131,7 +131,8 @@ def _typed(options: Any, prefix: str = "") -> dict[str, tuple[Any, Any]]:
 
     Of several objects, as the cases of a table, none can be.
     """
-    hints, typed = get_type_hints(type(options)), {}
+    hints = get_type_hints(type(options))
+    typed: dict[str, tuple[Any, Any]] = {}
     for field in fields(options):
         name, default = field.name, getattr(options, field.name)
         if is_dataclass(default) and name != "sensor":

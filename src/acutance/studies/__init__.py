@@ -6,7 +6,8 @@ from acutance.studies.catalogue import STUDIES, Study, run_study
 from acutance.studies.ground_noise import GroundNoiseOptions, study_ground_noise
 from acutance.studies.mirror_layout import MirrorLayout, lay_out_mirrors
 from acutance.studies.mirrors import MirrorPlan, MirrorPlanOptions, plan_mirrors
-from acutance.studies.plan import PlanOptions, plan_target
+from acutance.studies.plan import plan_target
+from acutance.studies.plan_options import PlanOptions
 from acutance.studies.result import Finding, StudyResult
 from acutance.studies.scatter import minimum_snr
 from acutance.studies.snr import SnrOptions, study_snr

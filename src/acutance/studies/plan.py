@@ -4,130 +4,35 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Literal
+from dataclasses import replace
 
 import numpy as np
 
-from acutance.arguments import require_types
 from acutance.curves import Estimate
 from acutance.curves.grid import Floats
-from acutance.errors import OptionError, TargetError
-from acutance.optics import Sensor, preset
+from acutance.errors import TargetError
+from acutance.optics import Sensor
 from acutance.simulate import edge, pulse
 from acutance.studies.bound import Design, equivalent_blur, free_bound, shape_bound
+from acutance.studies.plan_options import MAX_ROWS, MIN_ROWS, PlanOptions
 from acutance.studies.result import Finding, StudyResult
 from acutance.studies.table import Cell, Table
 from acutance.studies.trials import Execution, Record, run_trials
 from acutance.targets.options import chosen_options
 from acutance.targets.straight import measure_edge, measure_pulse
 
-__all__ = ["MAX_WIDTH_PX", "MIN_WIDTH_PX", "PLAN_METRICS", "PlanOptions", "plan_target"]
+__all__ = ["PLAN_METRICS", "plan_target"]
 
 PLAN_METRICS = ("mtf_nyquist", "rer", "fwhm_px", "width_px")
 
 _ROWS_SHARES = (0.5, 1.0, 1.5, 2.0)
 """Numbers of rows compared with a single one that is planned."""
 
-MIN_WIDTH_PX, MAX_WIDTH_PX = 0.5, 20.0
-_MIN_ROWS, _MAX_ROWS = 20, 2000
-
-_RANGES = {"snr": (1.0, 1e6), "window_px": (0.1, 1000.0)}
-
 _ROOM_PX = 10.0
 """Plateau beyond the target on either side, or three times the FWHM if that is more."""
 
 _NEAR_THE_BEST = 0.1
 """Designs whose error is within this share of the least are named as good ones."""
-
-
-@dataclass(frozen=True)
-class PlanOptions:
-    """What is planned, and what it is varied by.
-
-    The first number of rows and the first angle are the plan itself; of several widths it is
-    the one with the least bound of a free line spread function (LSF).
-
-    Parameters
-    ----------
-    target : {"edge", "pulse"}
-    sensor : Sensor
-    snr : float
-        Height of the target over the standard deviation of the noise, 1 to a million.
-    rows : tuple of int
-        Image rows that cross the target, 20 to 2000. A single number is varied from half to twice.
-    angles_deg : tuple of float
-        Tilts against the image's columns. A single number is compared with the usual ones.
-    widths_px : tuple of float
-        Widths of the pulse. A single number is compared with others from 1.5 to 4 px.
-    draws : int
-        Simulated images a design, 2 or more; 0 leaves the simulation out.
-    window_px : float
-        Of the bound of a free LSF, 0.1 to 1000.
-    accuracy : float, optional
-        Wanted standard deviation of the MTF at Nyquist: answered by a number of rows.
-    sensor_name : str, optional
-        What the sensor is called.
-
-    Raises
-    ------
-    OptionError
-        If a value is of another kind, or makes no sense.
-    """
-
-    target: Literal["edge", "pulse"] = "edge"
-    sensor: Sensor = field(default_factory=lambda: preset("generic-2005"))
-    snr: float = 100.0
-    rows: tuple[int, ...] = (40,)
-    angles_deg: tuple[float, ...] = (6.0,)
-    widths_px: tuple[float, ...] = (3.0,)
-    draws: int = 200
-    window_px: float = 10.0
-    accuracy: float | None = None
-    sensor_name: str = ""
-
-    def __post_init__(self) -> None:
-        require_types(self)
-        for name, (low, high) in _RANGES.items():
-            value = getattr(self, name)
-            if not low <= value <= high:
-                raise OptionError(f"{name} is {value:g}: give {low:g} to {high:g}")
-        if self.draws < 0:
-            raise OptionError(
-                f"draws is {self.draws}: give 2 or more simulated images, or 0 for the bounds alone"
-            )
-        if self.draws == 1:
-            raise OptionError(
-                "draws (--draws) is 1: a single simulated image has no scatter; give "
-                "2 or more, or 0 for the bounds alone"
-            )
-        if not self.rows or min(self.rows) < _MIN_ROWS or max(self.rows) > _MAX_ROWS:
-            raise OptionError(
-                f"rows (--rows): {_listed(self.rows)}; a target needs at least {_MIN_ROWS} to be "
-                f"measured, and {_MAX_ROWS} are the most that are planned; beyond, deviations "
-                "fall with the square root of the rows"
-            )
-        if not self.angles_deg or not all(0 < angle <= 30 for angle in self.angles_deg):
-            raise OptionError(
-                f"angles_deg (--angle): {_listed(self.angles_deg)}; an edge without tilt has no "
-                "sub-pixel phases, more than 30 degrees is not planned, and tilts the other way "
-                "are as good: give them without a sign; 5 to 10 are best"
-            )
-        if not self.widths_px or not all(
-            MIN_WIDTH_PX <= width <= MAX_WIDTH_PX for width in self.widths_px
-        ):
-            raise OptionError(
-                f"widths_px (--width-px, --width-m): {_listed(self.widths_px)} px; a pulse is "
-                f"{MIN_WIDTH_PX:g} to {MAX_WIDTH_PX:g} px wide, 3 is best; check the width and the "
-                "GSD"
-            )
-        if self.accuracy is not None and not 0 < self.accuracy < math.inf:
-            raise OptionError(f"accuracy is {self.accuracy:g}: it has to be finite and above 0")
-
-
-def _listed(numbers: Sequence[float]) -> str:
-    """Numbers as they are typed."""
-    return ", ".join(f"{one:.4g}" for one in numbers) or "none"
 
 
 def plan_target(
@@ -171,7 +76,7 @@ def _designs(options: PlanOptions) -> Iterator[tuple[str, Design]]:
     plan = Design(options.target, rows, angle, width if is_pulse else math.nan)
     yield "plan", _wide_enough(plan, options.sensor)
     more_rows = options.rows[1:] or [
-        min(max(_MIN_ROWS, round(share * rows)), _MAX_ROWS) for share in _ROWS_SHARES
+        min(max(MIN_ROWS, round(share * rows)), MAX_ROWS) for share in _ROWS_SHARES
     ]
     more_angles = options.angles_deg[1:] or (2.0, 4.0, 6.0, 8.0, 11.0, 14.0)
     single = len(options.widths_px) == 1
@@ -384,12 +289,10 @@ def _beside_plan(planned: float, errors: Floats, slack: float, simulated: bool) 
     What was simulated is by chance in part, and bounds are not.
     """
     if not math.isfinite(planned):
-        return "; that of the plan has no number"
+        return "; the plan has none"
     excess = planned / float(np.nanmin(errors)) - 1
     if not excess > 0:
         return ""
-    if math.isinf(excess):
-        return "; the plan has none"
     if 1 + excess <= slack:
         chance = ": what is between them may be chance" if simulated else ""
         return f"; the plan is one of them{chance}"
@@ -400,15 +303,15 @@ def _rows_needed(accuracy: float, expected: float, rows: int) -> Finding:
     """The rows of a wanted accuracy, where they can be measured and planned."""
     # A product is infinite where a power would be an error.
     ratio = expected / accuracy
-    needed = math.ceil(max(_MIN_ROWS, min(rows * ratio * ratio, _MAX_ROWS + 1)))
+    needed = math.ceil(max(MIN_ROWS, min(rows * ratio * ratio, MAX_ROWS + 1)))
     asked = f"rows: a standard deviation of {accuracy:g}"
-    if needed > _MAX_ROWS:
+    if needed > MAX_ROWS:
         text = (
-            f"{asked} needs more than the {_MAX_ROWS} of them that are planned: raise the SNR, or "
+            f"{asked} needs more than the {MAX_ROWS} of them that are planned: raise the SNR, or "
             "measure several targets"
         )
-    elif needed == _MIN_ROWS:
+    elif needed == MIN_ROWS:
         text = f"{asked} needs no more than {needed} of them, the fewest that can be measured"
     else:
         text = f"{asked} needs about {needed} of them (it falls with their square root)"
-    return Finding("rows_needed", needed if needed <= _MAX_ROWS else math.inf, text)
+    return Finding("rows_needed", needed if needed <= MAX_ROWS else math.inf, text)
