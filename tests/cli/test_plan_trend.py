@@ -65,3 +65,8 @@ def test_an_archive_says_what_its_images_are_like(acutance, place):
 )
 def test_what_cannot_be_planned_is_refused(refused, words, message):
     refused(["plan", "trend", *words], message)
+
+
+def test_a_single_year_is_no_years(acutance):
+    done = acutance("plan", "trend", "--years", "1", "--draws", 0)
+    assert "do not notice 1 % a year within 1 year (the least is" in done.stdout

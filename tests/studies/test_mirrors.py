@@ -10,6 +10,7 @@ import pytest
 
 import acutance as ac
 from acutance import optics
+from acutance.report import mirror_plan_text
 from acutance.studies import MirrorPlanOptions, lay_out_mirrors, plan_mirrors
 from acutance.studies.mirrors import place_errors_px
 
@@ -127,3 +128,8 @@ def test_columns_that_are_not_laid_out_are_refused(asked, message):
     with pytest.raises(ac.OptionError, match=message):
         MirrorPlanOptions(sensor=SENSOR, **asked)
     assert MirrorPlanOptions(sensor=SENSOR, count=10, columns=4).column_count == 4
+
+
+def test_a_bound_of_places_has_digits_at_any_snr():
+    plan = plan_mirrors(MirrorPlanOptions(sensor=SENSOR, snr=1e5, draws=0))
+    assert "no better than ± 8.0e-06 px" in mirror_plan_text(plan)

@@ -83,12 +83,16 @@ def _answer(plan: TrendPlan, pace: float) -> str:
     if math.isnan(needed):
         last = designs[-1]
         return (
-            f"{who} do not notice {drift} a year within {last.years:g} years (the least is "
+            f"{who} do not notice {drift} a year within {_years(last.years)} (the least is "
             f"{_per_cent(last.least_drift)}): take more images or more time, or lower the scatter"
         )
     if needed == designs[0].years:
-        return f"{who} notice {drift} a year after {needed:g} years or sooner"
+        return f"{who} notice {drift} a year after {_years(needed)} or sooner"
     return f"{who} notice {drift} a year after about {needed:.1f} years"
+
+
+def _years(count: float) -> str:
+    return "1 year" if count == 1 else f"{count:g} years"
 
 
 def trend_plan_figure(plan: TrendPlan) -> Figure:

@@ -87,7 +87,7 @@ def _metres(length_m: float) -> str:
 
 
 def _expected(plan: MirrorPlan) -> str:
-    bound = f"{plan.position_std_px:.4f}"
+    bound = format_number(plan.position_std_px, 2)
     if not plan.std:
         place = f"place of a mirror at SNR {plan.options.snr:g}: no better than ± {bound} px"
         return f"{place}{_none_measured(plan)}"
