@@ -54,7 +54,7 @@ _FAR: Final = 10.0
 likelier sensor in the end lay behind by 5 at most (benchmarks/scenes.py, twenty scenes)."""
 _FREE_PX2: Final = 0.1
 """Prior standard deviation of the modes by which first guesses may change."""
-_WORTHWHILE_S: Final = 5.0
+_WORTHWHILE_S: Final = 10.0
 """Other processes take some seconds of a core until they begin."""
 
 
