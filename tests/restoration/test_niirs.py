@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import acutance as ac
+from acutance.report import niirs_text
 
 
 @pytest.mark.parametrize(
@@ -245,3 +246,18 @@ def test_the_ratio_of_two_sensors_has_no_niirs():
     for given in (found, found.record, found.to_dict(), [found, found.record]):
         with pytest.raises(ac.OptionError, match=r"is the ratio MTF_low / MTF_high.*--reference"):
             ac.niirs(given, gsd_m=10.0, snr=80)
+
+
+def test_a_stated_rer_and_snr_have_those_of_the_measurement_beside_them(edges):
+    plain, stated = ac.niirs(edges[0]), ac.niirs(edges[0], rer=0.5, snr=10)
+    own = plain.inputs
+    assert stated.measured_rer == (own.rer_across, own.rer_along)
+    assert stated.measured_snr == own.snr
+    assert stated.to_dict()["measured_rer"] == [own.rer_across, own.rer_along]
+    told = niirs_text(stated)
+    assert f"0.5000, 0.5000 (stated; measured {own.rer_across:.4f}, {own.rer_along:.4f})" in told
+    assert "10 (stated; measured " in told
+    assert (plain.measured_rer, plain.measured_snr) == (None, None)
+    alone = ac.niirs(gsd_m=0.3, rer=0.5, snr=50)
+    assert alone.measured_rer is None
+    assert "of the inputs" in niirs_text(alone)

@@ -64,8 +64,12 @@ def plan_trend(
         ),
     ] = None,
     metric: Annotated[
-        str, typer.Option(metavar="NAME", help="Of the archive: mtf_nyquist, rer, fwhm_m, ...")
-    ] = "mtf_nyquist",
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="Of the archive: mtf_nyquist, rer, fwhm_m, ...; mtf_nyquist without it.",
+        ),
+    ] = None,
     selected: SelectionOptions,
     draws: Annotated[
         int,
@@ -115,15 +119,17 @@ def plan_trend(
 
 
 def _options(
-    archive: str | None, metric: str, selected: SelectionOptions, given: dict[str, Any]
+    archive: str | None, metric: str | None, selected: SelectionOptions, given: dict[str, Any]
 ) -> Any:
     """What is planned: from the words alone, or with what an archive shows."""
     from acutance.archive import Archive
     from acutance.archive.trends import TrendPlanOptions
 
     if archive is None:
-        if selected != SelectionOptions():
+        if metric is not None or selected != SelectionOptions():
             raise OptionError("options that select measurements need the archive: add --archive")
         return TrendPlanOptions(**given)
     with Archive(archive, read_only=True) as kept:
-        return TrendPlanOptions.of_trend(kept.trend(metric, **selected.words), **given)
+        return TrendPlanOptions.of_trend(
+            kept.trend(metric or "mtf_nyquist", **selected.words), **given
+        )

@@ -45,8 +45,8 @@ _POSSIBLE = {
 }
 """What any image may have, also one that was sharpened; the equations have no meaning beyond."""
 _STEP = 1e-4
-_SAME_GSD = 1e-4
-"""Share by which ground sampling distances differ by rounding alone."""
+_SAME = 1e-4
+"""Share by which numbers that are stated differ by rounding alone."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,8 +68,10 @@ class Niirs(Estimate):
         image.
     verdict : {"good", "usable", "doubtful", "invalid"} or None
         Of the measurement, or of the combination; ``None`` of stated numbers.
-    measured_gsd_m : float or None
-        GSD of the measurement, where another was stated.
+    measured_gsd_m, measured_snr : float or None
+        GSD and SNR of the measurement, where others were stated.
+    measured_rer : (float, float) or None
+        RER of the measurement across and along, where another was stated.
 
     Examples
     --------
@@ -84,6 +86,8 @@ class Niirs(Estimate):
     notes: tuple[Note, ...] = ()
     verdict: VerdictWord | None = None
     measured_gsd_m: float | None = None
+    measured_rer: tuple[float, float] | None = None
+    measured_snr: float | None = None
 
     def __str__(self) -> str:
         plain = Estimate(self.value, self.std)
@@ -100,6 +104,8 @@ class Niirs(Estimate):
             "equation_std": self.equation_std,
             "inputs": None if own is None else dict(vars(own)),
             "measured_gsd_m": self.measured_gsd_m,
+            "measured_rer": None if self.measured_rer is None else list(self.measured_rer),
+            "measured_snr": self.measured_snr,
             "verdict": self.verdict,
             "notes": [{"name": one.name, "message": one.message} for one in self.notes],
         }
@@ -173,7 +179,9 @@ def niirs(
             *((NO_OVERSHOOT,) if version == 5 and giqe_h is not None else ()),
         ),
         verdict=source.verdict,
-        measured_gsd_m=_other_gsd(source.numbers.get("gsd_m"), inputs.gsd_m),
+        measured_gsd_m=_other(source.numbers.get("gsd_m"), inputs.gsd_m),
+        measured_rer=None if rer is None else source.rer,
+        measured_snr=_other(source.numbers.get("snr"), inputs.snr),
     )
 
 
@@ -184,6 +192,12 @@ class _Source:
     numbers: Mapping[str, Any] = field(default_factory=dict)
     verdict: VerdictWord | None = None
     warnings: tuple[Note, ...] = ()
+
+    @property
+    def rer(self) -> tuple[float, float] | None:
+        """RER across and along, if something was measured."""
+        found = self.numbers
+        return (float(found["rer_across"]), float(found["rer_along"])) if found else None
 
     @classmethod
     def of(cls, given: Measured | Sequence[Measured], names: Sequence[str] | None) -> _Source:
@@ -210,11 +224,11 @@ class _Source:
         return cls(_of_record(record) | known, record.verdict.word, tuple(warnings))
 
 
-def _other_gsd(measured_m: float | None, used_m: float) -> float | None:
-    """The GSD of the measurement, if that used is another."""
-    if measured_m is None or math.isclose(measured_m, used_m, rel_tol=_SAME_GSD):
+def _other(measured: float | None, used: float) -> float | None:
+    """A number of the measurement, if that used is another."""
+    if measured is None or math.isclose(measured, used, rel_tol=_SAME):
         return None
-    return measured_m
+    return measured
 
 
 def _read_inputs(

@@ -213,9 +213,16 @@ def niirs_table(found: Niirs) -> Table:
     own = found.inputs
     assert own is not None
     low, high = found.interval(0.95)
-    gsd = format_number(own.gsd_m)
+    gsd, snr = format_number(own.gsd_m), format_number(own.snr)
+    rer = f"{own.rer_across:.4f}, {own.rer_along:.4f}"
     if found.measured_gsd_m is not None:
         gsd += f" (stated; the document's own is {format_number(found.measured_gsd_m)} m)"
+    if found.measured_rer is not None:
+        across, along = found.measured_rer
+        rer += f" (stated; measured {across:.4f}, {along:.4f})"
+    if found.measured_snr is not None:
+        snr += f" (stated; measured {format_number(found.measured_snr)})"
+    given = "inputs" if found.verdict is None else "measurement"
     # Version 5 is of images that were not sharpened, and has neither of them.
     of_sharpening = (
         ("overshoot H", format_number(own.giqe_h)),
@@ -224,11 +231,11 @@ def niirs_table(found: Niirs) -> Table:
     rows = (
         (f"NIIRS (GIQE {found.version})", word_estimate(found).value_and_std),
         ("95 % interval", f"{write_fixed(low, 2)} … {write_fixed(high, 2)}"),
-        ("of the measurement", write_fixed(found.inputs_std, 3)),
+        (f"of the {given}", write_fixed(found.inputs_std, 3)),
         ("of the equation", write_fixed(found.equation_std, 1)),
         ("GSD [m]", gsd),
-        ("RER across, along", f"{own.rer_across:.4f}, {own.rer_along:.4f}"),
-        ("SNR", format_number(own.snr)),
+        ("RER across, along", rer),
+        ("SNR", snr),
         ("elevation [°]", format_number(own.elevation_deg)),
         *(of_sharpening if found.version != 5 else ()),
     )
