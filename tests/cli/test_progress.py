@@ -20,6 +20,26 @@ def test_lines_come_no_more_often_than_they_may(capsys, monkeypatch):
     assert capsys.readouterr().err.splitlines() == ["batch: 2 of 20", "batch: 5"]
 
 
+def test_lines_have_what_was_found(capsys, monkeypatch):
+    now = [100.0]
+    monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
+    with progress.progress_bar("scan") as show:
+        now[0] += 30
+        show.tell("12 edges")
+        show(5, 9)
+    assert capsys.readouterr().err == "scan: 5 of 9 (12 edges)\n"
+
+
+def test_a_bar_has_what_was_found(capsys, monkeypatch):
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    with progress.progress_bar("scan") as show:
+        show.tell("12 edges, 7 to be used")
+        show(5, 9)
+    said = capsys.readouterr().err
+    assert "5/9" in said
+    assert "12 edges, 7 to be used" in said
+
+
 def test_ctrl_c_is_answered_at_once(capsys):
     usual = signal.getsignal(signal.SIGINT)
     signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -110,18 +110,28 @@ def test_an_interrupt_says_where_the_windows_are_kept(path, whole, tmp_path, mon
         ac.scan_scene(path, options=OPTIONS, progress=interrupt)
     same(ac.scan_scene(path, options=OPTIONS, keep=kept), whole)
 
-    def interrupted(*arguments):
+    def interrupted(*arguments, **options):
         raise KeyboardInterrupt
 
     # The fit that follows takes longer than the windows of many a scene.
     with monkeypatch.context() as patched:
-        patched.setattr("acutance.scan.scene._fit", interrupted)
+        patched.setattr("acutance.scan.scene.fit_sensor", interrupted)
+        patched.setattr("acutance.scan.bands.fit_sensor", interrupted)
         with pytest.raises(KeyboardInterrupt, match=r"9 of 9 windows are kept in .*scan\.parts"):
             ac.scan_scene(path, options=OPTIONS, keep=kept)
         with pytest.raises(KeyboardInterrupt, match="9 of 9 windows were done and are lost"):
             ac.scan_bands(path, options=OPTIONS)
     seen = []
-    same(ac.scan_scene(path, options=OPTIONS, keep=kept, progress=lambda *n: seen.append(n)), whole)
+    said = []
+    again = ac.scan_scene(
+        path, options=OPTIONS, keep=kept, progress=lambda *n: seen.append(n), tell=said.append
+    )
+    same(again, whole)
+    edges, used = whole.edges.size, whole.edges.used.sum()
+    assert said == [
+        f"{edges} edges, {used} to be used",
+        f"the sensor under {used} of {edges} edges",
+    ]
     assert seen == [(9, 9)]
 
 

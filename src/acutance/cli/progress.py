@@ -5,22 +5,30 @@ from __future__ import annotations
 import signal
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, Protocol
 
 from acutance.cli.terminal import say
 
-__all__ = ["progress_bar"]
-
-Show = Callable[[int, int | None], None]
+__all__ = ["Shown", "progress_bar"]
 
 _LINE_S = 10.0
 """Between two lines, where stderr is no terminal."""
 
 
+class Shown(Protocol):
+    """How far a long command has come, where it is shown."""
+
+    def __call__(self, done: int, total: int | None) -> None:
+        """So much is finished, of how much."""
+
+    def tell(self, words: str) -> None:
+        """What was found so far, or is done now."""
+
+
 @contextmanager
-def progress_bar(title: str) -> Iterator[Show]:
+def progress_bar(title: str) -> Iterator[Shown]:
     """A bar of what is finished, of how much, on stderr; a line now and then in a file.
 
     Ctrl-C is answered at once, whatever has to be ended then.
@@ -30,33 +38,50 @@ def progress_bar(title: str) -> Iterator[Show]:
     console = Console(stderr=True)
     with _answered_interrupts():
         if not console.is_terminal:
-            yield _lines(title)
+            yield _Lines(title)
             return
-        with _bar(title, console) as show:
-            yield show
+        with _bar(title, console) as shown:
+            yield shown
 
 
-def _lines(title: str) -> Show:
-    last = time.monotonic()
+class _Lines:
+    """A line now and then."""
 
-    def show(done: int, total: int | None) -> None:
-        nonlocal last
-        if time.monotonic() - last >= _LINE_S:
-            last = time.monotonic()
-            say(f"{title}: {done}" + ("" if total is None else f" of {total}"))
+    def __init__(self, title: str) -> None:
+        self.title, self.words, self.last = title, "", time.monotonic()
 
-    return show
+    def __call__(self, done: int, total: int | None) -> None:
+        if time.monotonic() - self.last >= _LINE_S:
+            self.last = time.monotonic()
+            count = f"{done}" if total is None else f"{done} of {total}"
+            say(f"{self.title}: {count}{self.words}")
+
+    def tell(self, words: str) -> None:
+        self.words = f" ({words})"
+
+
+class _Bar:
+    """A task of rich's bar."""
+
+    def __init__(self, progress: Any) -> None:
+        self.progress, self.task = progress, progress.add_task("", total=None)
+
+    def __call__(self, done: int, total: int | None) -> None:
+        self.progress.update(self.task, completed=done, total=total)
+
+    def tell(self, words: str) -> None:
+        self.progress.update(self.task, description=words)
 
 
 @contextmanager
-def _bar(title: str, console: Any) -> Iterator[Show]:
+def _bar(title: str, console: Any) -> Iterator[Shown]:
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
     from rich.progress import TimeRemainingColumn as Remaining
 
-    columns = (TextColumn(title), BarColumn(), MofNCompleteColumn(), Remaining())
+    told = TextColumn("{task.description}")
+    columns = (TextColumn(title), BarColumn(), MofNCompleteColumn(), Remaining(), told)
     with Progress(*columns, console=console, transient=True) as progress:
-        task = progress.add_task("", total=None)
-        yield lambda done, total: progress.update(task, completed=done, total=total)
+        yield _Bar(progress)
 
 
 @contextmanager

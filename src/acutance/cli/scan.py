@@ -183,6 +183,7 @@ def scan(
             "scheduler": dask,
             "keep": keep,
             "progress": progress,
+            "tell": progress.tell,
         }
         found: SceneMeasurement | BandScenes
         try:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from functools import partial
 from pathlib import Path
@@ -20,12 +20,14 @@ from acutance.scan.window_edges import WindowEdges, scan_window
 from acutance.scan.windows import Window, windows
 from acutance.targets.region import RoiLike, chosen_region
 
-__all__ = ["Progress", "answered_fit", "part_of", "scan_windows"]
+__all__ = ["Progress", "Tell", "answered_fit", "part_of", "scan_windows"]
 
 Found = list[WindowEdges]
 """The edges of a window: of every band."""
 Progress = Callable[[int, int], None]
 """Function of (windows done, windows in all)."""
+Tell = Callable[[str], None]
+"""Function of words: what was found so far, and what is done then."""
 _MIN_SIDE_PX = 8
 
 
@@ -64,6 +66,7 @@ def scan_windows(
     scheduler: str | None = None,
     keep: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
+    tell: Tell | None = None,
 ) -> list[list[WindowEdges]]:
     """The edges of all windows, in their order, and of every band.
 
@@ -85,6 +88,8 @@ def scan_windows(
     keep : path, optional
         File in which finished windows are kept.
     progress : function of (windows done, windows in all), optional
+    tell : function of str, optional
+        Hears after every window how many edges were found so far.
 
     Raises
     ------
@@ -100,9 +105,9 @@ def scan_windows(
     else:
         run = partial(_run_on_cluster, scan, images, scheduler=scheduler)
     if keep is None:
-        return _all_windows(run, parts, None, progress)
+        return _all_windows(run, parts, None, progress, tell)
     with KeptWindows(keep, scan_identity(images, box, region, gsd, options)) as kept:
-        return _all_windows(run, parts, kept, progress)
+        return _all_windows(run, parts, kept, progress, tell)
 
 
 def _all_windows(
@@ -110,20 +115,27 @@ def _all_windows(
     parts: Sequence[Window],
     kept: KeptWindows | None,
     progress: Progress | None,
+    tell: Tell | None,
 ) -> list[Found]:
     """Windows that are kept already, and then the others, as they are finished."""
     done: dict[int, Found] = {} if kept is None else dict(kept.done)
     todo = [place for place in range(len(parts)) if place not in done]
-    if progress is not None and done:
-        progress(len(done), len(parts))
+
+    def say() -> None:
+        if tell is not None:
+            tell(_edges_so_far(done.values()))
+        if progress is not None:
+            progress(len(done), len(parts))
+
+    if done:
+        say()
 
     def add(number: int, found: Found) -> None:
         place = todo[number]
         if kept is not None:
             kept.keep(place, found)
         done[place] = found
-        if progress is not None:
-            progress(len(done), len(parts))
+        say()
 
     try:
         run([parts[place] for place in todo], add)
@@ -131,6 +143,13 @@ def _all_windows(
         path = None if kept is None else kept.path
         raise KeyboardInterrupt(_interruption(len(done), len(parts), path)) from None
     return [done[place] for place in range(len(parts))]
+
+
+def _edges_so_far(done: Collection[Found]) -> str:
+    """How many edges were found, and how many of them can be used in the band that shows most."""
+    edges = sum(len(first.rows) for first, *_ in done)
+    used = (sum(len(one.used) for one in band) for band in zip(*done, strict=True))
+    return f"{edges} edges, {max(used, default=0)} to be used"
 
 
 def _run_here(

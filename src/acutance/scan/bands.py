@@ -18,7 +18,7 @@ from acutance.errors import FewEdgesError, ImageError, NoEdgeError
 from acutance.execution import results_in_turn
 from acutance.raster import Gsd, Image, open_bands
 from acutance.raster.band_label import label_band
-from acutance.scan.all_windows import Progress, answered_fit, part_of, scan_windows
+from acutance.scan.all_windows import Progress, Tell, answered_fit, part_of, scan_windows
 from acutance.scan.band_shift import BandShift, band_shift
 from acutance.scan.edge_table import EdgeTable
 from acutance.scan.options import ScanOptions
@@ -138,6 +138,7 @@ def scan_bands(
     scheduler: str | None = None,
     keep: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
+    tell: Tell | None = None,
 ) -> BandScenes:
     """Measure a sensor in several registered bands of a scene, and the shifts between them.
 
@@ -160,6 +161,8 @@ def scan_bands(
         As of `acutance.scan_scene`.
     progress : function of (done, in all), optional
         Of windows and then of bands, whose sensors are fitted.
+    tell : function of str, optional
+        As of `acutance.scan_scene`.
 
     Returns
     -------
@@ -188,7 +191,7 @@ def scan_bands(
     told = None if progress is None else _WindowsAndBands(progress, len(images))
     found = scan_windows(
         list(images.values()), box, region, gsd=gsd, options=chosen, workers=workers,
-        scheduler=scheduler, keep=keep, progress=told,
+        scheduler=scheduler, keep=keep, progress=told, tell=tell,
     )  # fmt: skip
     seen: dict[str, tuple[SceneEdges, EdgesSeen]] = {}
     rejected: list[Rejected] = []
@@ -201,6 +204,8 @@ def scan_bands(
             refused[name] = error.edges
             if told is not None:
                 told.band_is_done(len(found), len(rejected))
+    if tell is not None and seen:
+        tell(f"the sensors of {len(seen)} bands")
     scenes: dict[str, SceneMeasurement] = {}
     with answered_fit(len(found), keep):
         for (name, (edges, _)), fit in zip(seen.items(), _fits(seen, workers), strict=True):

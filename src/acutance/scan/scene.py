@@ -13,7 +13,7 @@ from acutance.curves.grid import Floats
 from acutance.errors import FewEdgesError, NoDataError
 from acutance.geometry.angles import axis_difference
 from acutance.raster import Box, Gsd, Image, Region, open_image
-from acutance.scan.all_windows import Progress, answered_fit, part_of, scan_windows
+from acutance.scan.all_windows import Progress, Tell, answered_fit, part_of, scan_windows
 from acutance.scan.band_pieces import UNSEEN
 from acutance.scan.checks import check_scene
 from acutance.scan.edge_likelihoods import EdgeLikelihoods
@@ -49,6 +49,7 @@ def scan_scene(
     scheduler: str | None = None,
     keep: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
+    tell: Tell | None = None,
 ) -> SceneMeasurement:
     """Measure a sensor from all straight edges of a scene.
 
@@ -78,6 +79,8 @@ def scan_scene(
         with other outputs measures no edge again. The file of another scan (the image
         changed, other options) is refused.
     progress : function of (windows done, windows in all), optional
+    tell : function of str, optional
+        Hears what was found so far, and that the sensor is being fitted.
 
     Returns
     -------
@@ -111,11 +114,13 @@ def scan_scene(
     require_statement(chosen, gsd_of_part(source, box, gsd))
     found = scan_windows(
         [source], box, region, gsd=gsd, options=chosen, workers=workers, scheduler=scheduler,
-        keep=keep, progress=progress,
+        keep=keep, progress=progress, tell=tell,
     )  # fmt: skip
     own = [one for (one,) in found]
     with answered_fit(len(found), keep):
         edges, seen = edges_seen(source, box, chosen, own)
+        if tell is not None:
+            tell(f"the sensor under {seen.x.size} of {edges.size} edges")
         return measured_scene(source, box, gsd, chosen, edges, fit_sensor(seen, workers), region)
 
 
