@@ -188,10 +188,10 @@ def scan_bands(
     first = next(iter(images.values()))
     box, region = part_of(first, roi)
     require_statement(chosen, gsd_of_part(first, box, gsd))
-    told = None if progress is None else _WindowsAndBands(progress, len(images))
+    counted = None if progress is None else _WindowsAndBands(progress, len(images))
     found = scan_windows(
         list(images.values()), box, region, gsd=gsd, options=chosen, workers=workers,
-        scheduler=scheduler, keep=keep, progress=told, tell=tell,
+        scheduler=scheduler, keep=keep, progress=counted, tell=tell,
     )  # fmt: skip
     seen: dict[str, tuple[SceneEdges, EdgesSeen]] = {}
     rejected: list[Rejected] = []
@@ -202,16 +202,16 @@ def scan_bands(
         except FewEdgesError as error:
             rejected.append(Rejected("fit", str(error), _named(name, one)))
             refused[name] = error.edges
-            if told is not None:
-                told.band_is_done(len(found), len(rejected))
+            if counted is not None:
+                counted.band_is_done(len(found), len(rejected))
     if tell is not None and seen:
-        tell(f"the sensors of {len(seen)} bands")
+        tell("the sensor of one band" if len(seen) == 1 else f"the sensors of {len(seen)} bands")
     scenes: dict[str, SceneMeasurement] = {}
     with answered_fit(len(found), keep):
         for (name, (edges, _)), fit in zip(seen.items(), _fits(seen, workers), strict=True):
             scenes[name] = measured_scene(images[name], box, gsd, chosen, edges, fit, region)
-            if told is not None:
-                told.band_is_done(len(found), len(rejected) + len(scenes))
+            if counted is not None:
+                counted.band_is_done(len(found), len(rejected) + len(scenes))
     if not scenes:
         whose = "the band" if len(images) == 1 else f"none of the {len(images)} bands"
         not_measured = "could not be measured" if len(images) == 1 else "could be measured"
