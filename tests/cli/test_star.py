@@ -48,7 +48,7 @@ def test_text_and_strict(acutance, star_image):
     result = acutance("star", star_image, "--wave", "square", "--cycles", "count", "--strict")
     assert result.exit_code == 3
     assert "36 cycles, a full turn" in result.stdout
-    assert re.search(r"CAUTION +level", result.stdout)
+    assert re.search(r"NOTE +level", result.stdout)
     loose = acutance("star", star_image, "--wave", "square", "--strict", "--limit", "level=0.2",
                      "--limit", "rim_cpp=0.2")  # fmt: skip
     assert loose.exit_code == 0
