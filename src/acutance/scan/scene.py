@@ -12,6 +12,7 @@ from acutance.curves import Estimate, Otf2d
 from acutance.curves.grid import Floats
 from acutance.errors import FewEdgesError, NoDataError
 from acutance.geometry.angles import axis_difference
+from acutance.numerics.one_thread import one_thread
 from acutance.raster import Box, Gsd, Image, Region, open_image
 from acutance.scan.all_windows import Progress, Tell, answered_fit, part_of, scan_windows
 from acutance.scan.band_pieces import UNSEEN
@@ -222,6 +223,7 @@ def _require_data(image: Image, box: Box, options: ScanOptions) -> None:
     )
 
 
+@one_thread
 def _seen(used: Sequence[UsedEdge], edges: SceneEdges, image: Image, box: Box) -> EdgesSeen:
     """What the used edges say.
 
