@@ -258,6 +258,7 @@ def test_a_stated_rer_and_snr_have_those_of_the_measurement_beside_them(edges):
     assert f"0.5000, 0.5000 (stated; measured {own.rer_across:.4f}, {own.rer_along:.4f})" in told
     assert "10 (stated; measured " in told
     assert (plain.measured_rer, plain.measured_snr) == (None, None)
+    assert ac.niirs(edges[0], rer=(own.rer_across, own.rer_along)).measured_rer is None
     alone = ac.niirs(gsd_m=0.3, rer=0.5, snr=50)
     assert alone.measured_rer is None
     assert "of the inputs" in niirs_text(alone)

@@ -180,7 +180,7 @@ def niirs(
         ),
         verdict=source.verdict,
         measured_gsd_m=_other(source.numbers.get("gsd_m"), inputs.gsd_m),
-        measured_rer=None if rer is None else source.rer,
+        measured_rer=_other_rer(source.rer, (inputs.rer_across, inputs.rer_along)),
         measured_snr=_other(source.numbers.get("snr"), inputs.snr),
     )
 
@@ -227,6 +227,15 @@ class _Source:
 def _other(measured: float | None, used: float) -> float | None:
     """A number of the measurement, if that used is another."""
     if measured is None or math.isclose(measured, used, rel_tol=_SAME):
+        return None
+    return measured
+
+
+def _other_rer(
+    measured: tuple[float, float] | None, used: tuple[float, float]
+) -> tuple[float, float] | None:
+    """Both RERs of the measurement, if one that is used is another."""
+    if measured is None or all(_other(*pair) is None for pair in zip(measured, used, strict=True)):
         return None
     return measured
 
