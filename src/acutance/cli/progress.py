@@ -11,13 +11,13 @@ from typing import Any, Protocol
 
 from acutance.cli.terminal import say
 
-__all__ = ["Shown", "progress_bar"]
+__all__ = ["ProgressBar", "progress_bar"]
 
 _LINE_S = 10.0
 """Between two lines, where stderr is no terminal."""
 
 
-class Shown(Protocol):
+class ProgressBar(Protocol):
     """How far a long command has come, where it is shown."""
 
     def __call__(self, done: int, total: int | None) -> None:
@@ -28,7 +28,7 @@ class Shown(Protocol):
 
 
 @contextmanager
-def progress_bar(title: str) -> Iterator[Shown]:
+def progress_bar(title: str) -> Iterator[ProgressBar]:
     """A bar of what is finished, of how much, on stderr; a line now and then in a file.
 
     Ctrl-C is answered at once, whatever has to be ended then.
@@ -74,7 +74,7 @@ class _Bar:
 
 
 @contextmanager
-def _bar(title: str, console: Any) -> Iterator[Shown]:
+def _bar(title: str, console: Any) -> Iterator[ProgressBar]:
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
     from rich.progress import TimeRemainingColumn as Remaining
 
