@@ -30,6 +30,7 @@ from acutance.studies.mirror_layout import (
     MirrorLayout,
     lay_out_mirrors,
 )
+from acutance.studies.plan_options import require_accuracy, require_several_draws
 from acutance.studies.trials import Execution, Record, run_trials
 from acutance.targets.points import measure_points
 
@@ -120,13 +121,8 @@ class MirrorPlanOptions:
         for name, (value, low, high) in bounds.items():
             if not low <= value <= high:
                 raise OptionError(f"{name} is {value:g}: it has to be {low:g} to {high:g}")
-        if self.accuracy is not None and not 0 < self.accuracy < math.inf:
-            raise OptionError(f"accuracy is {self.accuracy:g}: it has to be finite and above 0")
-        if self.draws == 1:
-            raise OptionError(
-                "draws (--draws) is 1: a single simulated image has no scatter; give 2 or more, or "
-                "0 for the layout alone"
-            )
+        require_accuracy(self.accuracy)
+        require_several_draws(self.draws, "layout")
         if self.accuracy is not None and self.draws == 0:
             raise OptionError(
                 "accuracy (--accuracy) is answered by simulated images, and draws (--draws) is 0: "

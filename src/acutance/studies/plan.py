@@ -198,43 +198,15 @@ def _findings(options: PlanOptions, table: Table) -> tuple[Finding, ...]:
     simulated = options.draws > 1
     kind = "mtf_nyquist_rms" if simulated else "mtf_nyquist_free"
     expected = float(table[kind][0])
-    rows = int(table["rows"][0])
-    how = "bound of a free LSF"
-    if simulated:
-        stated = float(table["mtf_nyquist_stated"][0])
-        itself = f", which states ± {stated:.4f}" if math.isfinite(stated) else ""
-        how = f"rms error of our estimator{itself}"
-    width = float(table["target_width_px"][0])
-    across = "" if math.isnan(width) else f" of a pulse {width:.3g} px wide"
-    design = f"{rows} rows{across} at {options.angles_deg[0]:g} deg and an SNR of {options.snr:g}"
-    if math.isfinite(expected):
-        answer = f"MTF at Nyquist: {expected:.4f} ({how}) from {design}"
-    elif math.isinf(expected):
-        answer = (
-            f"MTF at Nyquist: no number ({how}) from {design}: the spectrum of such a pulse is "
-            "zero there; choose another width"
-        )
-    else:
-        answer = f"MTF at Nyquist: no number ({how}) from {design}: choose another design"
-    found = [Finding("expected_mtf_nyquist", expected, answer)]
+    found = [_expected(options, table, expected)]
     if refused := int(table["refused"][0]):
         found.append(_refused(refused, options.draws))
     found.append(_room(options))
     widths = dict.fromkeys(options.widths_px)
     if len(widths) > 1 and options.target == "pulse":
-        listed = ", ".join(f"{one:.3g}" for one in widths)
-        free = math.isfinite(float(table["mtf_nyquist_free"][0]))
-        least = "a free LSF" if free else "a known shape (none has one of a free LSF)"
-        found.append(
-            Finding(
-                "planned_width_px",
-                width,
-                f"plan: of the widths {listed} px, {width:.3g} px has the least bound of {least} "
-                "and is taken; name one alone to plan another",
-            )
-        )
+        found.append(_width_taken(list(widths), table))
     if options.accuracy is not None and math.isfinite(expected):
-        found.append(_rows_needed(options.accuracy, expected, rows))
+        found.append(_rows_needed(options.accuracy, expected, int(table["rows"][0])))
     # The rms of n draws is uncertain by one part in sqrt(2 n).
     slack = 1 + max(_NEAR_THE_BEST, 2 / math.sqrt(options.draws) if simulated else 0.0)
     varied = {"angle": ("angle_deg", "deg"), "width": ("target_width_px", "px")}
@@ -258,6 +230,38 @@ def _findings(options: PlanOptions, table: Table) -> tuple[Finding, ...]:
             )
         )
     return tuple(found)
+
+
+def _expected(options: PlanOptions, table: Table, expected: float) -> Finding:
+    """The error of the MTF at Nyquist that is to be expected of the plan."""
+    how = "bound of a free LSF"
+    if options.draws > 1:
+        stated = float(table["mtf_nyquist_stated"][0])
+        itself = f", which states ± {stated:.4f}" if math.isfinite(stated) else ""
+        how = f"rms error of our estimator{itself}"
+    rows, width = int(table["rows"][0]), float(table["target_width_px"][0])
+    across = "" if math.isnan(width) else f" of a pulse {width:.3g} px wide"
+    design = f"{rows} rows{across} at {options.angles_deg[0]:g} deg and an SNR of {options.snr:g}"
+    if math.isfinite(expected):
+        answer = f"{expected:.4f} ({how}) from {design}"
+    else:
+        advice = "choose another design"
+        if math.isinf(expected):
+            advice = "the spectrum of such a pulse is zero there; choose another width"
+        answer = f"no number ({how}) from {design}: {advice}"
+    return Finding("expected_mtf_nyquist", expected, f"MTF at Nyquist: {answer}")
+
+
+def _width_taken(widths_px: Sequence[float], table: Table) -> Finding:
+    """Which of several widths is planned, and why."""
+    listed, width = ", ".join(f"{one:.3g}" for one in widths_px), float(table["target_width_px"][0])
+    free = math.isfinite(float(table["mtf_nyquist_free"][0]))
+    least = "a free LSF" if free else "a known shape (none has one of a free LSF)"
+    text = (
+        f"plan: of the widths {listed} px, {width:.3g} px has the least bound of {least} and is "
+        "taken; name one alone to plan another"
+    )
+    return Finding("planned_width_px", width, text)
 
 
 def _refused(refused: int, draws: int) -> Finding:

@@ -1,4 +1,4 @@
-"""What is planned of an edge or a pulse."""
+"""What is planned of an edge or a pulse; what is refused of mirrors, too."""
 
 from __future__ import annotations
 
@@ -11,7 +11,15 @@ from acutance.arguments import require_types
 from acutance.errors import OptionError
 from acutance.optics import Sensor, preset
 
-__all__ = ["MAX_ROWS", "MAX_WIDTH_PX", "MIN_ROWS", "MIN_WIDTH_PX", "PlanOptions"]
+__all__ = [
+    "MAX_ROWS",
+    "MAX_WIDTH_PX",
+    "MIN_ROWS",
+    "MIN_WIDTH_PX",
+    "PlanOptions",
+    "require_accuracy",
+    "require_several_draws",
+]
 
 MIN_WIDTH_PX, MAX_WIDTH_PX = 0.5, 20.0
 MIN_ROWS, MAX_ROWS = 20, 2000
@@ -74,11 +82,7 @@ class PlanOptions:
             raise OptionError(
                 f"draws is {self.draws}: give 2 or more simulated images, or 0 for the bounds alone"
             )
-        if self.draws == 1:
-            raise OptionError(
-                "draws (--draws) is 1: a single simulated image has no scatter; give "
-                "2 or more, or 0 for the bounds alone"
-            )
+        require_several_draws(self.draws, "bounds")
         if not self.rows or min(self.rows) < MIN_ROWS or max(self.rows) > MAX_ROWS:
             raise OptionError(
                 f"rows (--rows): {_listed(self.rows)}; a target needs at least {MIN_ROWS} to be "
@@ -99,8 +103,40 @@ class PlanOptions:
                 f"{MIN_WIDTH_PX:g} to {MAX_WIDTH_PX:g} px wide, 3 is best; check the width and the "
                 "GSD"
             )
-        if self.accuracy is not None and not 0 < self.accuracy < math.inf:
-            raise OptionError(f"accuracy is {self.accuracy:g}: it has to be finite and above 0")
+        require_accuracy(self.accuracy)
+
+
+def require_several_draws(draws: int, alone: str) -> None:
+    """Refuse a plan of one simulated image.
+
+    Parameters
+    ----------
+    draws : int
+    alone : str
+        What a plan without any has, in words.
+
+    Raises
+    ------
+    OptionError
+        If there is one.
+    """
+    if draws == 1:
+        raise OptionError(
+            "draws (--draws) is 1: a single simulated image has no scatter; give 2 or more, or 0 "
+            f"for the {alone} alone"
+        )
+
+
+def require_accuracy(accuracy: float | None) -> None:
+    """Refuse a wanted standard deviation that is none.
+
+    Raises
+    ------
+    OptionError
+        If one is wanted that is not finite and above 0.
+    """
+    if accuracy is not None and not 0 < accuracy < math.inf:
+        raise OptionError(f"accuracy is {accuracy:g}: it has to be finite and above 0")
 
 
 def _listed(numbers: Sequence[float]) -> str:
