@@ -11,6 +11,7 @@ from acutance.numerics.stacked import stacked
 from acutance.targets.combine.correction import Correction
 from acutance.targets.combine.curves import ChiSquare, OtfSamples, WhitenedCurves
 from acutance.targets.combine.fit import combine_curves
+from acutance.targets.combine.form_fit import likely_starts
 from acutance.targets.combine.lit_curves import LitCurves
 from acutance.targets.combine.plane import Plane
 from acutance.targets.combine.sensor_forms import FORMS, SensorForm
@@ -221,6 +222,17 @@ def test_a_term_enters_where_the_curves_show_it(block, term, number, true):
     found = fit.otf.numbers[number]
     assert abs(found.value - true) < 4 * found.std + 0.02
     assert found.std < 0.2
+
+
+@pytest.mark.parametrize("terms", [one for one in FORMS if {"smear", "trail", "phase"} & {*one}])
+def test_first_guesses_of_what_has_a_direction_are_guesses_of_it_alone(terms):
+    form = SensorForm(terms)
+    data = WhitenedCurves([curve(OBLIQUE.otf, one, 0.002) for one in DIRECTIONS])
+    for start in likely_starts(data, [form])[0]:
+        moved = {name for name, value in form.numbers(start).items()
+                 if value != pytest.approx(form.numbers(form.mean)[name])}  # fmt: skip
+        assert moved
+        assert all(name.startswith(("smear_", "trail_", "phase_")) for name in moved)
 
 
 def std_at_nyquist(fit):

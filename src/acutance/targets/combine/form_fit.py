@@ -21,6 +21,7 @@ from acutance.targets.combine.curves import WhitenedCurves
 from acutance.targets.combine.form_products import FormProducts
 from acutance.targets.combine.lit_curves import LitCurves
 from acutance.targets.combine.sensor_forms import SensorForm
+from acutance.targets.combine.sensor_terms import TERMS
 from acutance.targets.combine.weighted_forms import WeightedForm
 
 __all__ = ["FIRST_STEPS", "FormFit", "Start", "fit_forms", "likely_starts"]
@@ -257,7 +258,8 @@ def _starts(form: SensorForm) -> list[Floats]:
     found = [form.mean]
     for name, ways in _STARTS.items():
         if name in form.terms:
-            at = SensorForm(form.terms[: form.terms.index(name)]).mean.size
+            before = form.terms[: form.terms.index(name)]
+            at = sum(len(TERMS[one].mean) for one in before)
             found = [_with(start, at, way) for start in found for way in ways]
     return found
 
