@@ -7,19 +7,23 @@ Zernike polynomials of `acutance.optics.Aberrations` give::
 
     D / s = x (8 sqrt(3) d + 4 sqrt(6) a_along + 24 sqrt(5) b (2 (x^2 + y^2 + s^2) - 1))
             + y 4 sqrt(6) a_across
-            + sqrt(8) (2 (9 x^2 + 3 y^2 + 3 s^2 - 3) c_along + 12 x y c_across)
+            + sqrt(8) (2 (9 x^2 + 3 y^2 + 3 s^2 - 3 (1 + e^2)) c_along + 12 x y c_across)
 
 of defocus d, astigmatism a, spherical aberration b and coma c, whose components are those about
-axes turned to the shift; what moves the image only, 2 sqrt(8) s c_along, is left out. The mean is a
-quadrature over the open pupil. Where it is obscured, other coefficients stand for it: fitted to
-twelve telescopes that were drawn (`acutance.optics.FAMILIES`) a form with this factor leaves .0001
-to .006 of the OTF, in root mean square.
+axes turned to the shift; what moves the image only is left out, by the radius e of the obscuration.
+The mean is a quadrature (`acutance.targets.combine.pupil_overlap`).
+
+Most telescopes that are out of alignment have one aberration that stands out. Where edges in two or
+three directions leave open what is between them, a form with all six coefficients pays for those
+that nobody needs, and forms that are none of a telescope win: so astigmatism and defocus are a
+factor of their own. Their D is linear in x and y, the OTF real.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,18 +31,20 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.optics.aperture import aperture_transfer
 from acutance.targets.combine.plane import Plane
-from acutance.targets.combine.term import Term, aperture, columns, one_by_one
+from acutance.targets.combine.pupil_overlap import overlap_nodes
+from acutance.targets.combine.term import Term, Transfer, aperture, columns, one_by_one
 
-__all__ = ["ABERRATED", "diffraction"]
+__all__ = ["ABERRATED", "ASTIGMATIC", "diffraction"]
 
 Complexes = NDArray[np.complex128]
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 _WAVES_MEAN = (0.03, 0.0, 0.0, 0.0, 0.0, 0.0)
 """At no defocus and no astigmatism both are stationary: a fit that begins there stays."""
 _WAVES_STD = 0.04
 """Of every coefficient: .1 waves in all is a telescope that is just diffraction-limited."""
-_STEP = 1e-5
+_DEFOCUS_STD, _ASTIGMATISM_STD = 0.05, 0.08
+"""Of those of an aberration that stands out."""
+_STEP = 1e-6
 _DEFOCUS, _ASTIGMATISM = 8 * math.sqrt(3), 4 * math.sqrt(6)
 
 
@@ -48,11 +54,35 @@ def _aberrated(p: Floats, plane: Plane) -> Complexes:
 
 def _slopes(p: Floats, plane: Plane) -> Complexes:
     bare, difference = diffraction(p[:2], plane), _Difference.of(p, plane)
-    cutoff, obscuration = _STEP * np.eye(2, p.size)
-    by_cutoff = _aberrated(p + cutoff, plane) - _aberrated(p - cutoff, plane)
-    by_obscuration = diffraction(p + obscuration, plane) - diffraction(p - obscuration, plane)
-    by_pupil = np.stack([by_cutoff, by_obscuration * difference.mean]) / (2 * _STEP)
-    return np.concatenate([by_pupil, bare * difference.slopes])
+    return np.concatenate([_slopes_by_pupil(_aberrated, p, plane), bare * difference.slopes])
+
+
+def _astigmatic(p: Floats, plane: Plane) -> Floats:
+    weights, angle, *_ = _linear_difference(p, plane)
+    return np.asarray(diffraction(p[:2], plane) * np.sum(weights * np.cos(angle), axis=1))
+
+
+def _astigmatic_slopes(p: Floats, plane: Plane) -> Floats:
+    bare, (weights, angle, by_x, by_y) = diffraction(p[:2], plane), _linear_difference(p, plane)
+    sines = -bare[:, None] * weights * np.sin(angle)
+    by_waves = _by_waves(np.sum(sines * by_x, axis=1), np.sum(sines * by_y, axis=1), plane)
+    return np.concatenate([_slopes_by_pupil(_astigmatic, p, plane), 2 * math.pi * by_waves])
+
+
+def _linear_difference(p: Floats, plane: Plane) -> tuple[Floats, Floats, Floats, Floats]:
+    """Weights of the nodes, the angles 2 pi D of defocus and astigmatism, and the products s x and
+    s y that D is made of, (n, m) each."""
+    s, x, y, weights = _common_part(p, plane)
+    by_x, by_y = s * x, s * y
+    amount_x, amount_y = _tilts(p, plane)
+    angle = 2 * math.pi * (amount_x[:, None] * by_x + amount_y[:, None] * by_y)
+    return weights, angle, by_x, by_y
+
+
+def _slopes_by_pupil(otf: Transfer, p: Floats, plane: Plane) -> NDArray[Any]:
+    """Derivatives by cut-off and obscuration, (2, n), by differences."""
+    steps = _STEP * np.eye(2, p.size)
+    return np.stack([otf(p + step, plane) - otf(p - step, plane) for step in steps]) / (2 * _STEP)
 
 
 def diffraction(p: Floats, plane: Plane) -> Floats:
@@ -65,60 +95,88 @@ def diffraction(p: Floats, plane: Plane) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class _Difference:
-    """The difference D of the wavefronts over what the pupil and itself, shifted, have in common.
+    """The difference D of the wavefronts over one half of what the pupil and itself have in common.
+
+    At the opposite place of the other half what is odd in D, all but coma, has the other sign.
 
     Attributes
     ----------
-    along, twice : (2, n) array
-        Unit vectors of the shifts, and of twice their angle.
-    shapes : (5, n, m) array
-        What D is made of: x and y, spherical aberration, coma along the shift and across it.
+    plane : Plane
+    along : (2, n) array
+        Unit vectors of the shifts.
+    odd, even : (3, n, m) and (2, n, m) array
+        What D is made of: x and y, spherical aberration; coma along the shift and across it.
+    angle : (n, m) array
+        2 pi times what is odd.
     waves : (n, m) complex array
-        ``exp(2 pi i D)`` times the weights of the nodes.
+        ``exp(2 pi i even)`` times the weights of the nodes.
     """
 
+    plane: Plane
     along: Floats
-    twice: Floats
-    shapes: Floats
+    odd: Floats
+    even: Floats
+    angle: Floats
     waves: Complexes
 
     @classmethod
     def of(cls, p: Floats, plane: Plane) -> _Difference:
         """Of the parameters of `ABERRATED`, at places of the plane."""
-        shift = np.minimum(plane.waves / (2 * math.pi * math.exp(p[0])), 1.0)
-        x, y, weights = _common_part(shift)
-        s = shift[:, None]
-        spherical = 24 * math.sqrt(5) * s * x * (2 * (x**2 + y**2 + s**2) - 1)
-        coma_along = 2 * math.sqrt(8) * s * (9 * x**2 + 3 * y**2 + 3 * s**2 - 3)
-        coma_across = 12 * math.sqrt(8) * s * x * y
-        shapes = np.stack([s * x, s * y, spherical, coma_along, coma_across])
-        length = np.maximum(np.hypot(plane.u_cpp, plane.v_cpp), 1e-12)
-        along = np.stack([plane.u_cpp, plane.v_cpp]) / length
-        twice = np.stack([along[0] ** 2 - along[1] ** 2, 2 * along[0] * along[1]])
-        amounts = np.stack(
-            [
-                _DEFOCUS * p[2] + _ASTIGMATISM * (p[3:5] @ twice),
-                _ASTIGMATISM * (p[3:5] @ _across(twice)),
-                np.full(shift.size, p[7]),
-                p[5:7] @ along,
-                p[5:7] @ _across(along),
-            ]
-        )
-        difference = np.einsum("kn,knm->nm", amounts, shapes)
-        return cls(along, twice, shapes, weights * np.exp(2j * math.pi * difference))
+        s, x, y, weights = _common_part(p, plane)
+        xx, yy, ss = x * x, y * y, s * s
+        odd = np.stack([s * x, s * y, 24 * math.sqrt(5) * s * x * (2 * (xx + yy + ss) - 1)])
+        _, obscuration = aperture(p[0], p[1])
+        coma_along = 6 * math.sqrt(8) * s * (3 * xx + yy + ss - 1 - obscuration**2)
+        even = np.stack([coma_along, 12 * math.sqrt(8) * s * x * y])
+        along, _ = _directions(plane)
+        by_x, by_y = _tilts(p, plane)
+        angle = 2 * math.pi * np.einsum("kn,knm->nm", [by_x, by_y, np.full_like(by_x, p[7])], odd)
+        coma = np.einsum("kn,knm->nm", [p[5:7] @ along, p[5:7] @ _across(along)], even)
+        waves = weights * np.exp(2j * math.pi * coma)
+        return cls(plane, along, odd, even, angle, waves)
 
     @property
     def mean(self) -> Complexes:
         """Mean of ``exp(2 pi i D)``, (n,)."""
-        return np.asarray(self.waves.sum(axis=1))
+        return np.asarray(np.sum(self.waves * np.cos(self.angle), axis=1))
 
     @property
     def slopes(self) -> Complexes:
         """Its derivatives by the six coefficients, (6, n)."""
-        by_x, by_y, spherical, coma_along, coma_across = np.sum(self.waves * self.shapes, axis=2)
-        astigmatism = _ASTIGMATISM * (self.twice * by_x + _across(self.twice) * by_y)
+        sines, cosines = -self.waves * np.sin(self.angle), 1j * self.waves * np.cos(self.angle)
+        by_x, by_y, spherical = np.einsum("nm,knm->kn", sines, self.odd)
+        coma_along, coma_across = np.einsum("nm,knm->kn", cosines, self.even)
         coma = self.along * coma_along + _across(self.along) * coma_across
-        return 2j * math.pi * np.vstack([_DEFOCUS * by_x, astigmatism, coma, spherical])
+        by_waves = _by_waves(by_x, by_y, self.plane)
+        return np.asarray(2 * math.pi * np.vstack([by_waves, coma, spherical]), complex)
+
+
+def _common_part(p: Floats, plane: Plane) -> tuple[Floats, Floats, Floats, Floats]:
+    """Half the shift of the pupil, (n, 1), and nodes x and y and weights, (n, m) each."""
+    cutoff, obscuration = aperture(p[0], p[1])
+    shift = np.minimum(plane.waves / (2 * math.pi * cutoff), 1.0)
+    return shift[:, None], *overlap_nodes(shift, float(obscuration))
+
+
+def _tilts(p: Floats, plane: Plane) -> tuple[Floats, Floats]:
+    """What defocus and astigmatism give D of s x and of s y, (n,) each."""
+    _, twice = _directions(plane)
+    by_x = _DEFOCUS * p[2] + _ASTIGMATISM * (p[3:5] @ twice)
+    return np.asarray(by_x), np.asarray(_ASTIGMATISM * (p[3:5] @ _across(twice)))
+
+
+def _by_waves(by_x: NDArray[Any], by_y: NDArray[Any], plane: Plane) -> NDArray[Any]:
+    """Derivatives by defocus and both astigmatisms, (3, n), of those by the two tilts, (n,)."""
+    _, twice = _directions(plane)
+    astigmatism = _ASTIGMATISM * (twice * by_x + _across(twice) * by_y)
+    return np.vstack([_DEFOCUS * by_x, astigmatism])
+
+
+def _directions(plane: Plane) -> tuple[Floats, Floats]:
+    """Unit vectors of the places, and of twice their angle, (2, n) each."""
+    length = np.maximum(np.hypot(plane.u_cpp, plane.v_cpp), 1e-12)
+    along = np.stack([plane.u_cpp, plane.v_cpp]) / length
+    return along, np.stack([along[0] ** 2 - along[1] ** 2, 2 * along[0] * along[1]])
 
 
 def _across(along: Floats) -> Floats:
@@ -126,32 +184,20 @@ def _across(along: Floats) -> Floats:
     return np.stack([-along[1], along[0]])
 
 
-def _common_part(shift: Floats) -> tuple[Floats, Floats, Floats]:
-    """Nodes x and y and weights of what two discs have in common, by shift, (n, m) each."""
-    # By the angle on the farther disc's rim: its chords have no infinite slope.
-    end = np.arccos(shift)[:, None]
-    angle = 0.5 * end * (_NODES + 1)
-    x, chord = np.cos(angle) - shift[:, None], np.sin(angle)
-    strip = _WEIGHTS * chord**2
-    x, chord = np.hstack([x, -x])[..., None], np.hstack([chord, chord])[..., None]
-    weights = np.hstack([strip, strip])[..., None] * _WEIGHTS
-    total = np.maximum(weights.sum(axis=(1, 2), keepdims=True), 1e-300)
-    rows = shift.size
-    return (
-        np.broadcast_to(x, weights.shape).reshape(rows, -1),
-        (chord * _NODES).reshape(rows, -1),
-        (weights / total).reshape(rows, -1),
-    )
-
-
-def _numbers(p: Floats) -> dict[str, float]:
+def _astigmatic_numbers(p: Floats) -> dict[str, float]:
     cutoff, obscuration = aperture(p[0], p[1])
-    defocus, astigmatism, astigmatism_45, across, along, spherical = map(float, p[2:])
     return {
         "cutoff_cpp": float(cutoff),
         "obscuration": float(obscuration),
-        "defocus_waves": 2 * math.sqrt(3) * abs(defocus),
-        "astigmatism_waves": math.hypot(astigmatism, astigmatism_45),
+        "defocus_waves": 2 * math.sqrt(3) * abs(float(p[2])),
+        "astigmatism_waves": math.hypot(p[3], p[4]),
+    }
+
+
+def _numbers(p: Floats) -> dict[str, float]:
+    across, along, spherical = map(float, p[5:])
+    return {
+        **_astigmatic_numbers(p),
         "coma_across_waves": across,
         "coma_along_waves": along,
         "spherical_waves": abs(spherical),
@@ -167,3 +213,12 @@ ABERRATED = Term(
 )
 """Cut-off and obscuration as of an aperture in focus, then the coefficients in waves: defocus,
 astigmatism along 0 and 45 degrees, coma across and along, spherical aberration."""
+
+ASTIGMATIC = Term(
+    one_by_one(_astigmatic),
+    ABERRATED.mean[:5],
+    (*ABERRATED.std[:2], _DEFOCUS_STD, _ASTIGMATISM_STD, _ASTIGMATISM_STD),
+    _astigmatic_numbers,
+    one_by_one(_astigmatic_slopes),
+)
+"""The first five of them."""

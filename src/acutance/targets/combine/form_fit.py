@@ -37,12 +37,14 @@ _SETTLED = 1e-6
 _FLAT = 1e-8
 """Cosine between the residual and what any parameter changes: no step leads further."""
 
-_STARTS: Mapping[str, Sequence[tuple[float, float]]] = {
-    "smear": ((0.9, 0.15), (0.15, 0.9), (0.7, 0.7), (0.7, -0.7)),
-    "upright smear": ((0.0, -1.5), (-1.5, 0.0), (-0.4, -0.4)),
-    "trail": ((0.3, 0.3), (0.3, -0.3), (-0.3, 0.3), (-0.3, -0.3)),
-    "phase": ((0.7, 0.7), (0.7, -0.7), (-0.7, 0.7), (-0.7, -0.7)),
+_STARTS: Mapping[str, tuple[int, Sequence[tuple[float, float]]]] = {
+    "smear": (0, ((0.9, 0.15), (0.15, 0.9), (0.7, 0.7), (0.7, -0.7))),
+    "upright smear": (0, ((0.0, -1.5), (-1.5, 0.0), (-0.4, -0.4))),
+    "trail": (0, ((0.3, 0.3), (0.3, -0.3), (-0.3, 0.3), (-0.3, -0.3))),
+    "phase": (0, ((0.7, 0.7), (0.7, -0.7), (-0.7, 0.7), (-0.7, -0.7))),
+    "astigmatism": (3, ((0.1, 0.0), (-0.1, 0.0), (0.0, 0.1), (0.0, -0.1))),
 }
+"""Of terms with a direction: the first of two parameters, and guesses of both."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -256,10 +258,10 @@ def likely_starts(data: WhitenedCurves, forms: Sequence[SensorForm]) -> list[lis
 def _starts(form: SensorForm) -> list[Floats]:
     """First guesses: a smear or trail of 0 is stationary, and both have directions."""
     found = [form.mean]
-    for name, ways in _STARTS.items():
+    for name, (first, ways) in _STARTS.items():
         if name in form.terms:
             before = form.terms[: form.terms.index(name)]
-            at = sum(len(TERMS[one].mean) for one in before)
+            at = first + sum(len(TERMS[one].mean) for one in before)
             found = [_with(start, at, way) for start in found for way in ways]
     return found
 

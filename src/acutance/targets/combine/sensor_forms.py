@@ -189,6 +189,7 @@ SCENE_FORMS: tuple[tuple[str, ...], ...] = (
 
 FORMS: tuple[tuple[str, ...], ...] = (
     *SCENE_FORMS,
+    ("gaussian", "astigmatism"),
     ("gaussian", "aberrated"),
     ("gaussian", "smear", "aberrated"),
     ("gaussian", "short kernel"),

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.geometry.angles import wrap_axis
 from acutance.optics.aperture import defocused_transfer
-from acutance.targets.combine.aberration_term import ABERRATED, diffraction
+from acutance.targets.combine.aberration_term import ABERRATED, ASTIGMATIC, diffraction
 from acutance.targets.combine.plane import Plane
 from acutance.targets.combine.processing_terms import PROCESSING_TERMS
 from acutance.targets.combine.resampling_term import RESAMPLING
@@ -238,6 +238,7 @@ TERMS: dict[str, Term] = {
     "diffraction": Term(diffraction, (math.log(1.3), -0.5), (0.4, 1.0), _diffraction_numbers),
     "defocus": Term(_defocus, (math.log(1.3), -0.5, 0.25), (0.4, 1.0, 0.15), _defocus_numbers),
     "aberrated": ABERRATED,
+    "astigmatism": ASTIGMATIC,
     "resampling": RESAMPLING,
     **PROCESSING_TERMS,
 }
