@@ -234,15 +234,15 @@ class CheckData:
         """Variance of a fit to many pixels under this noise over that under white noise.
 
         The largest ratio of the plateaus' noise power to that of white noise of the same variance,
-        along the normal times along the target.
+        along the normal and along the target.
         """
         if not self.across.significant:
             return 1.0
         x, y = self.fit.line.normal
-        return self.inflation * self._correlation((-y, x)).inflation
+        return self._correlation((x, y), (-y, x)).inflation
 
-    def _correlation(self, direction: tuple[float, float]) -> Correlation:
-        """Correlation of the plateaus' noise, and its power along a direction (x, y).
+    def _correlation(self, *directions: tuple[float, float]) -> Correlation:
+        """Correlation of the plateaus' noise, and its largest power along directions (x, y).
 
         On the plateaus alone, each about its own level: across the edge a method's own misfit
         looks like correlation, and so does a level that a published method takes from few pixels.
@@ -254,7 +254,7 @@ class CheckData:
         if noise <= MISFIT:
             return Correlation(1.0, 0.0, 0.0)
         bounded = np.minimum(np.maximum(residual / noise, -_OUTLYING), _OUTLYING)
-        return correlation(bounded, rows, cols, [direction])
+        return correlation(bounded, rows, cols, directions)
 
     @cached_property
     def plateau_std(self) -> float:

@@ -31,7 +31,7 @@ from acutance.targets.straight.fit_edge import SplineEdge, fit_edge_steps
 from acutance.targets.straight.lsf import of_stated_target
 from acutance.targets.straight.options import EdgeOptions
 from acutance.targets.straight.pixels import EdgeFit, EdgePixels
-from acutance.targets.straight.published import PUBLISHED, PUBLISHED_OPTIONS
+from acutance.targets.straight.published import BY_ROWS, PUBLISHED, PUBLISHED_OPTIONS
 from acutance.targets.straight.stated_target import stated_target
 from acutance.targets.straight.straight_measurement import StraightDetails, StraightMeasurement
 from acutance.targets.straight.trim import trim
@@ -216,8 +216,8 @@ def segment_steps(
     fit = yield from estimate(trimmed, options)
     yield
     check = partial(
-        check_edge, region, extent=extent, limits=options.limits, by_rows=method in PUBLISHED,
-        of_scene=of_scene,
+        check_edge, region, extent=extent, limits=options.limits, by_rows=method in BY_ROWS,
+        own_misfit=method in PUBLISHED, of_scene=of_scene,
     )  # fmt: skip
     return _measurement(region, trimmed, fit, method, options, check)
 

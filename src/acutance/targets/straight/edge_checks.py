@@ -90,6 +90,7 @@ def check_edge(
     limits: Limits,
     *,
     by_rows: bool,
+    own_misfit: bool,
     of_scene: bool = False,
 ) -> tuple[Check, ...]:
     """All checks of an edge.
@@ -104,6 +105,8 @@ def check_edge(
         Limits the caller changed.
     by_rows : bool
         Whether the method works row by row, which limits the angle.
+    own_misfit : bool
+        Whether the method's curves do not follow the pixels.
     of_scene : bool, optional
         Whether it is one of the many edges of a scene: what has one answer for all of them is asked
         of the scene.
@@ -136,9 +139,9 @@ def check_edge(
         double_edge(data, limits),
         asymmetric_lsf(data, limits, of_scene=of_scene),
         asymmetric_wings(data, limits),
-        profile(data, limits, 0.0, own_misfit=by_rows),
+        profile(data, limits, 0.0, own_misfit=own_misfit),
         outliers(data, limits),
-        *ground_checks(data, limits, ("dark", "bright")),
+        *ground_checks(data, limits, ("dark", "bright"), steps=1),
         *rim(data, limits),
     )
 

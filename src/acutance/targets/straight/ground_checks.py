@@ -23,7 +23,9 @@ _MIN_LEVEL = 0.003
 """Share of the contrast below which ground is taken as even when the two sides are compared."""
 
 
-def ground_checks(data: CheckData, limits: Limits, sides: tuple[str, str]) -> tuple[Check, ...]:
+def ground_checks(
+    data: CheckData, limits: Limits, sides: tuple[str, str], *, steps: int
+) -> tuple[Check, ...]:
     """What lies beside the target; nothing where the method has no model of it.
 
     Parameters
@@ -32,6 +34,8 @@ def ground_checks(data: CheckData, limits: Limits, sides: tuple[str, str]) -> tu
     limits : mapping of str to float
     sides : (str, str)
         Names of the sides before and behind the target.
+    steps : int
+        Of the target: 1 of an edge, 2 of a pulse.
     """
     if not isinstance(data.fit, SplineEdge):
         return ()
@@ -39,7 +43,7 @@ def ground_checks(data: CheckData, limits: Limits, sides: tuple[str, str]) -> tu
     spans = [_span(one.distance_px, one.level, one.seen, close_px) for one in data.fit.ground]
     return (
         _ground(spans, limits, sides), _close(spans, close_px, limits, sides),
-        _mirrored(data.fit, spans, limits),
+        _mirrored(data.fit, spans, limits, steps),
     )  # fmt: skip
 
 
@@ -99,16 +103,16 @@ def _close(spans: list[_Span], close_px: float, limits: Limits, sides: tuple[str
     return answer("close_ground", levels[worst], found, limits)
 
 
-def _mirrored(fit: SplineEdge, spans: list[_Span], limits: Limits) -> Check:
+def _mirrored(fit: SplineEdge, spans: list[_Span], limits: Limits, steps: int) -> Check:
     """Whether the ground on one side is the mirror image of that on the other.
 
-    Ground is not; ringing of a sharpened product, which is as far out on both sides of an edge,
-    is. The likeness is the correlation of the steps on both sides, opposite in sign, where the
-    levels they add up to are large enough to matter.
+    Ground is not; ringing of a sharpened product, which is as far out on both sides, is: opposite
+    in sign beside an edge, of one sign beside a pulse. The likeness is the correlation of the steps
+    on both sides, where the levels they add up to are large enough to matter.
     """
     before, behind = fit.ground
     count = min(before.step.size, behind.step.size)
-    one, other = before.step[:count], -behind.step[:count]
+    one, other = before.step[:count], (-1) ** steps * behind.step[:count]
     power = math.sqrt(float(one @ one) * float(other @ other))
     large = min(spans)[0] > _MIN_LEVEL
     value = max(float(one @ other) / power, 0.0) if large else 0.0

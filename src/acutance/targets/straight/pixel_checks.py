@@ -232,7 +232,8 @@ def _slope_outwards(data: CheckData, from_px: float) -> tuple[float, float, floa
         weighed += own * APERTURE_TAIL_PX / mean_px**2
     if power <= 0:
         return 0.0, 0.0, 1.0
-    return covariance / power, max(data.noise, MISFIT) / math.sqrt(power), weighed / power
+    noise = max(data.noise, MISFIT) * math.sqrt(data.inflation)
+    return covariance / power, noise / math.sqrt(power), weighed / power
 
 
 def correlated_noise(data: CheckData, limits: Limits) -> Check:

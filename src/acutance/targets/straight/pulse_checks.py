@@ -147,7 +147,7 @@ def check_pulse(
         _wide_enough(limits, width),
         stated_width,
         _zero_distance(data, limits, width.value, by_ratio=by_ratio),
-        *ground_checks(data, limits, ("before", "behind")),
+        *ground_checks(data, limits, ("before", "behind"), steps=2),
     )
 
 

@@ -109,7 +109,7 @@ class Sensors:
 
     @cached_property
     def second_moment(self) -> Floats:
-        """Covariance of all sensors about none, family by family, (q, q)."""
+        """Sum over the families of the covariance of their sensors about none, (q, q)."""
         found = np.zeros((self.basis.shape[1],) * 2)
         for family in self.families:
             mean = family.weight @ family.coordinates

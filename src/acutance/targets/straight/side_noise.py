@@ -99,7 +99,7 @@ class SideNoise:
         """Of the darker and the brighter level: variances, pixels, places between the target's."""
         if min(variances) <= NOISE_FLOOR**2 or min(counts) < MIN_SIDE_PIXELS:
             return None
-        chance = taken * data.smoothness * (2 / counts[0] + 2 / counts[1])
+        chance = taken * data.across.pixels_as_one * (2 / counts[0] + 2 / counts[1])
         low, high = data.fit.dark, data.fit.bright
         if levels[0] > levels[1]:
             low, high = -high, -low

@@ -101,8 +101,9 @@ def one_sided_overshoot(data: CheckData, limits: Limits) -> Check:
     """
     coarse, esf = data.coarse_esf, data.fit.response.esf.value
     over, under = max(float(esf.max()) - 1, 0.0), max(-float(esf.min()), 0.0)
-    places = [coarse.nearest(int(place)) for place in (esf.argmax(), esf.argmin())]
-    std = float(np.linalg.norm(coarse.factor[places]))
+    most, least = (coarse.factor[coarse.nearest(int(at))] for at in (esf.argmax(), esf.argmin()))
+    # Of both in common: what moves the whole profile raises one and lowers the other.
+    std = float(np.linalg.norm((over > 0) * most + (under > 0) * least))
     apart = abs(over - under)
     more = apart if apart > STRUCTURE_SIGMAS * std else 0.0
     side = "bright" if over > under else "dark"

@@ -108,7 +108,8 @@ MAX_SENSOR_MISFIT: Final = 20.0
 """Chi-square by which the density of sensors may follow the pixels less than the normal prior,
 which has some five more degrees of freedom."""
 OTHER_WEIGHT: Final = 0.05
-"""How often a sensor is like none of the families: those are counted in units of one family."""
+"""How often a sensor is like none of the families, in units of the kernels of one size of one
+family."""
 KERNEL_SCALES: Final = (0.3, 0.7)
 """Size of the kernels of the density of sensors relative to its family: that of a sensor like those
 that were drawn, and of one unlike them."""
@@ -129,9 +130,10 @@ landscapes (eleven families of sensors) 96 % of the intervals at Nyquist and of 
 without it 94 and 90 %, and 2.3 % of the edges called good, whatever lies beside them, are off by
 more than 3 deviations, with it .8."""
 BROAD_PRIOR: Final = 10.0
-"""Width of a prior that says nothing of the LSF, relative to the sensors that were drawn: of what
-the pixels alone say chi-square at the true OTF is then .7 of its freedom over all families (at 3 it
-is .5; of the normal prior itself 1 to 50, sharpened sensors being far from it)."""
+"""Width of a prior that says nothing of the LSF, relative to the sum over the families of the
+second moments of the sensors that were drawn: of what the pixels alone say chi-square at the true
+OTF is then .7 of its freedom over all families (at 3 it is .5; of the normal prior itself 1 to 50,
+sharpened sensors being far from it)."""
 APERTURE_PX: Final = (1.0, 0.18)
 """Mean and standard deviation of the detector's aperture: fill factors are near one."""
 CURVATURE_STD_PER_PX: Final = 1e-3

@@ -20,6 +20,7 @@ from acutance.targets.straight.published.sdsu_pulse import (
 )
 
 __all__ = [
+    "BY_ROWS",
     "PUBLISHED",
     "PUBLISHED_OPTIONS",
     "PUBLISHED_PULSE",
@@ -43,6 +44,9 @@ PUBLISHED: dict[str, Callable[..., EdgeFit]] = {
     "iso12233": iso12233,
     "fermi": fermi,
 }
+
+BY_ROWS = frozenset(PUBLISHED) - {"fermi"}
+"""Methods that find the edge in every row (or column) by itself: they need it nearly upright."""
 
 PUBLISHED_OPTIONS: dict[str, type] = {
     "sdsu-2005": SdsuOptions,
