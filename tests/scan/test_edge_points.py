@@ -78,7 +78,7 @@ def test_pieces_cover_what_lies_in_the_core_once():
                              rng=np.random.default_rng(0))  # fmt: skip
     (whole,) = segments_of(image)
     length = 0.0
-    for window in windows(Box(0, 0, 200, 200), 70, (200, 200)):
+    for window in windows(Box(0, 0, 200, 200), 70, (200, 200), 20.0):
         for one in pieces(whole, window.core, 5.0, 40.0):
             assert one.stop_px - one.start_px <= 40.0
             inside = (
@@ -92,7 +92,7 @@ def test_pieces_cover_what_lies_in_the_core_once():
 
 def test_windows_cover_a_box_once():
     count = np.zeros((300, 500), int)
-    for window in windows(Box(20, 30, 250, 410), 128, (300, 500)):
+    for window in windows(Box(20, 30, 250, 410), 128, (300, 500), 20.0):
         count[window.core.slices] += 1
         assert max(window.core.shape) <= 128
         assert window.whole.intersection(Box(0, 0, 300, 500)) == window.whole
@@ -101,11 +101,18 @@ def test_windows_cover_a_box_once():
     assert count.sum() == 250 * 410
 
 
+@pytest.mark.parametrize(("half_width_px", "margin_px"), [(20.0, 32), (60.0, 60)])
+def test_windows_reach_as_far_as_the_regions_of_their_edges(half_width_px, margin_px):
+    for window in windows(Box.whole((1300, 1300)), 650, (1300, 1300), half_width_px):
+        reach = window.core.grown(margin_px).intersection(Box.whole((1300, 1300)))
+        assert window.whole == reach
+
+
 @pytest.mark.parametrize(
     ("shape", "count"), [((500, 500), 1), ((1000, 1000), 4), ((2048, 2000), 16), ((9000, 300), 9)]
 )
 def test_windows_of_small_images_are_smaller_so_that_all_processes_have_some(shape, count):
-    assert len(list(windows(Box.whole(shape), 1024, shape))) == count
+    assert len(list(windows(Box.whole(shape), 1024, shape, 20.0))) == count
 
 
 def test_the_region_of_a_piece_holds_it_with_ground_on_both_sides():

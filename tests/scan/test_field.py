@@ -9,6 +9,8 @@ from acutance.scan.blur_modes import blur_modes, changed, edge_modes, fit_modes,
 from acutance.scan.edge_likelihoods import EdgeLikelihoods
 from acutance.scan.field import Field, field_polynomials
 from acutance.scan.field_fit import fit_field
+from acutance.scan.information import mode_information
+from acutance.scan.population import fit_shares
 from acutance.scan.shares import START
 
 FREQ = np.arange(0.1, 0.75, 0.1)
@@ -35,6 +37,16 @@ def drawn(variance, soft_share=0.0, count=800, seed=0):
     root = np.broadcast_to(np.eye(2 * FREQ.size) / STD, (count, *(2 * [2 * FREQ.size])))
     rank = np.full(count, 2.0 * FREQ.size)
     return EdgeLikelihoods.of_roots(FREQ, root, seen / STD, rank, bins, normals), x, y
+
+
+def test_the_information_is_that_of_the_amounts_that_were_found():
+    edges, _, _ = drawn(constant, soft_share=0.6, count=200)
+    modes = edge_modes(NORMALS, FREQ)[:, :, :3]
+    wrong = changed(middle(constant), modes[:, :, 0] * 0.03)
+    found = fit_modes(edges, wrong, START, modes[edges.bin])
+    there = fit_shares(edges.turned(np.exp(modes[edges.bin] @ found.amount)), wrong, found.share)
+    _, information = mode_information(there, modes[edges.bin])
+    np.testing.assert_allclose(found.information, information, rtol=1e-3, atol=500.0)
 
 
 def settled(edges, x, y):

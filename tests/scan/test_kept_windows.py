@@ -14,7 +14,7 @@ import pytest
 
 import acutance as ac
 from acutance import simulate
-from acutance.raster import Box, write_geotiff
+from acutance.raster import Box, Image, write_geotiff
 from acutance.scan.scan_identity import difference, scan_identity
 
 OPTIONS = ac.ScanOptions(window_px=128)
@@ -205,6 +205,16 @@ def test_an_array_is_known_by_its_pixels(path, tmp_path):
     pixels[300, 300] += 1
     with pytest.raises(ac.OptionError, match="image or band differs"):
         ac.scan_scene(pixels, options=OPTIONS, keep=kept)
+
+
+def test_pixels_of_another_type_saturate_elsewhere(path):
+    pixels = np.minimum(ac.open_image(path).read(), 255.0).astype(np.uint8)
+    images = [Image.from_array(pixels.astype(kind)) for kind in (np.uint8, np.uint16)]
+    one, other = (
+        scan_identity([image], Box.whole(image.shape), None, None, OPTIONS) for image in images
+    )
+    assert one["images"][0]["pixels"] == other["images"][0]["pixels"]
+    assert difference(one, other) == "saturation level"
 
 
 def test_files_of_others_are_left_alone(path, tmp_path):

@@ -98,7 +98,7 @@ def scan_windows(
         the file is of another scan.
     """
     require_workers(workers)
-    parts = list(windows(box, options.window_px, images[0].shape))
+    parts = list(windows(box, options.window_px, images[0].shape, options.half_width_px))
     scan = partial(scan_window, gsd=gsd, options=options, region=region)
     if scheduler is None:
         run = partial(_run_here, scan, images, workers=workers)

@@ -166,6 +166,7 @@ def fit_modes(
         amount, member, reached = moved, tried, value
         if is_last:
             break
+    _, information = mode_information(member, modes)
     return ModesFit(amount, member.share, information, reached)
 
 

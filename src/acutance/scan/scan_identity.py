@@ -32,6 +32,7 @@ _IMAGE_WORDS = {
     "path": "name of the image",
     "band": "band",
     "nodata": "nodata value (nodata, --nodata)",
+    "saturation_level": "saturation level",
     "curve": "characteristic curve (linearize, --gamma, --linearize)",
 }
 
@@ -109,7 +110,7 @@ def _image(image: Image) -> Any:
     """An image by its name and how it is read; one in memory by its pixels."""
     named = named_from_root(image)
     if image.path is None:
-        return {"pixels": _checksum(image)}
+        return {"pixels": _checksum(image), "saturation_level": image.saturation_level}
     return {"shape": list(image.shape), "band": image.band, **_content(named.source)}
 
 

@@ -212,7 +212,7 @@ def measured_scene(
 
 def _require_data(image: Image, box: Box, options: ScanOptions) -> None:
     """Refuse pixels of which none holds data."""
-    for window in windows(box, options.window_px, image.shape):
+    for window in windows(box, options.window_px, image.shape, options.half_width_px):
         pixels, _ = read_data(image, window.core)
         if np.isfinite(pixels).any():
             return
