@@ -11,7 +11,7 @@ from acutance.numerics.stacked import stacked
 from acutance.targets.combine.correction import Correction
 from acutance.targets.combine.curves import ChiSquare, OtfSamples, WhitenedCurves
 from acutance.targets.combine.fit import combine_curves
-from acutance.targets.combine.form_fit import likely_starts
+from acutance.targets.combine.form_fit import fit_forms, likely_starts
 from acutance.targets.combine.lit_curves import LitCurves
 from acutance.targets.combine.plane import Plane
 from acutance.targets.combine.sensor_forms import FORMS, SensorForm
@@ -20,6 +20,11 @@ from acutance.targets.otf_likelihood import OtfLikelihood
 
 FREQ = np.arange(1, 17) * 0.05
 DIRECTIONS = (6.0, 97.0, 31.0, 62.0)
+GUESSED = {
+    "smear": "smear_", "trail": "trail_", "phase": "phase_", "astigmatism": "astigmatism_",
+    "aberrated": "defocus_",
+}  # fmt: skip
+"""Terms that have first guesses, and how the names of their numbers begin."""
 
 
 class Oblique:
@@ -258,7 +263,7 @@ def test_a_term_enters_where_the_curves_show_it(block, term, number, true):
     assert found.std < 0.2
 
 
-@pytest.mark.parametrize("terms", [one for one in FORMS if {"smear", "trail", "phase"} & {*one}])
+@pytest.mark.parametrize("terms", [one for one in FORMS if {*one} & {*GUESSED}])
 def test_first_guesses_of_what_has_a_direction_are_guesses_of_it_alone(terms):
     form = SensorForm(terms)
     data = WhitenedCurves([curve(OBLIQUE.otf, one, 0.002) for one in DIRECTIONS])
@@ -266,7 +271,34 @@ def test_first_guesses_of_what_has_a_direction_are_guesses_of_it_alone(terms):
         moved = {name for name, value in form.numbers(start).items()
                  if value != pytest.approx(form.numbers(form.mean)[name])}  # fmt: skip
         assert moved
-        assert all(name.startswith(("smear_", "trail_", "phase_")) for name in moved)
+        assert all(name.startswith(tuple(GUESSED[one] for one in terms if one in GUESSED))
+                   or name == "defocus_waves" for name in moved)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", [name for name, term in TERMS.items() if term.signed])
+def test_signs_that_may_be_changed_change_no_otf(name):
+    term, rng = TERMS[name], np.random.default_rng(2)
+    p = rng.uniform(0.02, 0.1, len(term.mean))
+    other = p.copy()
+    other[list(term.signed)] *= -1
+    plane = Plane(*rng.uniform(-0.8, 0.8, (2, 20)))
+    np.testing.assert_allclose(term.otf(other, plane), term.otf(p, plane), atol=1e-12)
+    assert not any(term.mean[i] for i in term.signed)
+
+
+@pytest.mark.parametrize(("smear_px", "low", "high"), [(1.5, 1.999, 2.0), (0.05, 1.0, 1.6)])
+def test_a_form_of_two_equal_optima_is_as_likely_as_both(monkeypatch, smear_px, low, high):
+    sensor = optics.Sensor([optics.Gaussian(0.35), optics.Smear(smear_px), optics.Detector()])
+    data = WhitenedCurves([curve(sensor.otf, one, 0.002) for one in DIRECTIONS])
+    form, nowhere = SensorForm(("gaussian", "smear")), np.zeros((data.values.size, 0))
+
+    def score():
+        starts = [(form, p) for p in likely_starts(data, [form])[0]]
+        return fit_forms(data, starts, 0.0, nowhere)[0].score
+
+    both = score()
+    monkeypatch.setitem(TERMS, "smear", replace(TERMS["smear"], signed=()))
+    assert low <= np.exp(0.5 * (score() - both)) <= high
 
 
 def std_at_nyquist(fit):

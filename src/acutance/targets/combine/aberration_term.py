@@ -38,8 +38,6 @@ __all__ = ["ABERRATED", "ASTIGMATIC", "diffraction"]
 
 Complexes = NDArray[np.complex128]
 
-_WAVES_MEAN = (0.03, 0.0, 0.0, 0.0, 0.0, 0.0)
-"""At no defocus and no astigmatism both are stationary: a fit that begins there stays."""
 _WAVES_STD = 0.04
 """Of every coefficient: .1 waves in all is a telescope that is just diffraction-limited."""
 _DEFOCUS_STD, _ASTIGMATISM_STD = 0.05, 0.08
@@ -206,10 +204,11 @@ def _numbers(p: Floats) -> dict[str, float]:
 
 ABERRATED = Term(
     one_by_one(_aberrated),
-    (math.log(1.3), -0.5, *_WAVES_MEAN),
+    (math.log(1.3), -0.5, *6 * (0.0,)),
     (0.4, 1.0, *6 * (_WAVES_STD,)),
     _numbers,
     one_by_one(_slopes),
+    signed=(2, 3, 4, 7),
 )
 """Cut-off and obscuration as of an aperture in focus, then the coefficients in waves: defocus,
 astigmatism along 0 and 45 degrees, coma across and along, spherical aberration."""
@@ -220,5 +219,6 @@ ASTIGMATIC = Term(
     (*ABERRATED.std[:2], _DEFOCUS_STD, _ASTIGMATISM_STD, _ASTIGMATISM_STD),
     _astigmatic_numbers,
     one_by_one(_astigmatic_slopes),
+    signed=(2, 3, 4),
 )
 """The first five of them."""

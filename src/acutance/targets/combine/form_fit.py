@@ -6,6 +6,7 @@ form_products`, `acutance.numerics.levenberg_marquardt`).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -13,6 +14,7 @@ from itertools import groupby
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import log_ndtr
 
 from acutance.curves.grid import Floats
 from acutance.numerics.levenberg_marquardt import Expansion, least_squares
@@ -37,14 +39,16 @@ _SETTLED = 1e-6
 _FLAT = 1e-8
 """Cosine between the residual and what any parameter changes: no step leads further."""
 
-_STARTS: Mapping[str, tuple[int, Sequence[tuple[float, float]]]] = {
+_STARTS: Mapping[str, tuple[int, Sequence[tuple[float, ...]]]] = {
     "smear": (0, ((0.9, 0.15), (0.15, 0.9), (0.7, 0.7), (0.7, -0.7))),
     "upright smear": (0, ((0.0, -1.5), (-1.5, 0.0), (-0.4, -0.4))),
     "trail": (0, ((0.3, 0.3), (0.3, -0.3), (-0.3, 0.3), (-0.3, -0.3))),
     "phase": (0, ((0.7, 0.7), (0.7, -0.7), (-0.7, 0.7), (-0.7, -0.7))),
-    "astigmatism": (3, ((0.1, 0.0), (-0.1, 0.0), (0.0, 0.1), (0.0, -0.1))),
+    "astigmatism": (2, ((0.03, 0.1, 0.0), (0.03, -0.1, 0.0), (0.03, 0.0, 0.1), (0.03, 0.0, -0.1))),
+    "aberrated": (2, ((0.03,),)),
 }
-"""Of terms with a direction: the first of two parameters, and guesses of both."""
+"""Of terms that are stationary at their mean, or have several optima: the first of some parameters,
+and guesses of them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,11 +180,23 @@ class _Misfits:
         # Laplace: the posterior of parameters and directions is narrower than their prior.
         whole = np.concatenate([std, np.ones(ways.shape[1])])
         narrowed = np.linalg.slogdet(whole[:, None] * normal * whole)[1]
-        score = cost + float(narrowed)
+        score = cost + float(narrowed) - 2 * self._log_twins(form, p, inverse)
         nothing = Correction(form, tuple(p.tolist()))
         covariance = scale[:, None] * (inverse + self.data.shared_of(moved)) * scale
         root = np.asarray(np.linalg.cholesky(0.5 * (covariance + covariance.T)))
         return FormFit(form, share, nothing, p, share * amounts, root, 1.0, score=score)
+
+    @staticmethod
+    def _log_twins(form: SensorForm, p: Floats, covariance: Floats) -> float:
+        """Logarithm of how many optima there are like this one, signs changed.
+
+        Those that overlap with it count in part: half of each lies on its own side of zero.
+        """
+        found = 0.0
+        for at in form.signed:
+            far = math.sqrt(p[at] @ np.linalg.solve(covariance[np.ix_(at, at)], p[at]))
+            found += math.log(2) + float(log_ndtr(far))
+        return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -256,7 +272,7 @@ def likely_starts(data: WhitenedCurves, forms: Sequence[SensorForm]) -> list[lis
 
 
 def _starts(form: SensorForm) -> list[Floats]:
-    """First guesses: a smear or trail of 0 is stationary, and both have directions."""
+    """First guesses of the parameters of a form."""
     found = [form.mean]
     for name, (first, ways) in _STARTS.items():
         if name in form.terms:
@@ -266,7 +282,7 @@ def _starts(form: SensorForm) -> list[Floats]:
     return found
 
 
-def _with(start: Floats, at: int, way: tuple[float, float]) -> Floats:
+def _with(start: Floats, at: int, way: tuple[float, ...]) -> Floats:
     moved = start.copy()
-    moved[at : at + 2] = way
+    moved[at : at + len(way)] = way
     return moved

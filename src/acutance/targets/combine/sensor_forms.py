@@ -103,6 +103,16 @@ class SensorForm:
         return min(widths, default=0.0)
 
     @property
+    def signed(self) -> tuple[NDArray[np.intp], ...]:
+        """Of terms that have such the places of parameters whose signs may all be changed."""
+        found, start = [], 0
+        for name in self.terms:
+            if TERMS[name].signed:
+                found.append(start + np.array(TERMS[name].signed, np.intp))
+            start += len(TERMS[name].mean)
+        return tuple(found)
+
+    @property
     def oblique_terms(self) -> tuple[str, ...]:
         """Terms of the form in any direction that this one is a case of."""
         return tuple(_OBLIQUE.get(name, name) for name in self.terms)

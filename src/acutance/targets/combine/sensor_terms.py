@@ -229,7 +229,7 @@ TERMS: dict[str, Term] = {
         _round_numbers,
         _round_slopes,
     ),
-    "smear": Term(_smear, (0.0, 0.0), (1.2, 1.2), _smear_numbers),
+    "smear": Term(_smear, (0.0, 0.0), (1.2, 1.2), _smear_numbers, signed=(0, 1)),
     "upright smear": Term(
         upright_smear, (-0.4, -0.4), (0.8, 0.8), _upright_smear_numbers, upright_smear_slopes
     ),

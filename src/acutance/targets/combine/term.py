@@ -36,6 +36,8 @@ class Term:
         The reported numbers, by name with the unit.
     slopes : function of (parameters, plane), optional
         Derivatives of the OTF by the parameters, (..., p, n), in closed form.
+    signed : tuple of int, optional
+        Parameters, of a prior about 0, whose signs may all be changed: the OTF stays.
     """
 
     otf: Transfer
@@ -43,6 +45,7 @@ class Term:
     std: tuple[float, ...]
     numbers: Callable[[Floats], dict[str, float]]
     slopes: Transfer | None = None
+    signed: tuple[int, ...] = ()
 
 
 def columns(p: Floats) -> tuple[Floats, ...]:
