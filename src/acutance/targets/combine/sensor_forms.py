@@ -199,6 +199,7 @@ SCENE_FORMS: tuple[tuple[str, ...], ...] = (
 
 FORMS: tuple[tuple[str, ...], ...] = (
     *SCENE_FORMS,
+    ("gaussian", "close halo"),
     ("gaussian", "astigmatism"),
     ("gaussian", "aberrated"),
     ("gaussian", "smear", "aberrated"),

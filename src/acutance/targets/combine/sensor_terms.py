@@ -234,6 +234,9 @@ TERMS: dict[str, Term] = {
         upright_smear, (-0.4, -0.4), (0.8, 0.8), _upright_smear_numbers, upright_smear_slopes
     ),
     "halo": Term(_halo, (-2.5, math.log(3.0), -0.5), (0.7, 0.4, 1.5), _halo_numbers, _halo_slopes),
+    "close halo": Term(
+        _halo, (0.5, math.log(0.6), 0.5), (1.5, 0.6, 1.5), _halo_numbers, _halo_slopes
+    ),
     "trail": Term(_trail, (0.0, 0.0), (0.4, 0.4), _trail_numbers),
     "diffraction": Term(diffraction, (math.log(1.3), -0.5), (0.4, 1.0), _diffraction_numbers),
     "defocus": Term(_defocus, (math.log(1.3), -0.5, 0.25), (0.4, 1.0, 0.15), _defocus_numbers),
