@@ -9,6 +9,7 @@ import acutance as ac
 from acutance import simulate
 from acutance.targets import in_turn
 from acutance.targets.in_turn import are_many
+from acutance.targets.region import read_region
 
 SENSOR = simulate.reference_systems()["gaussian"]
 GOOD, SMALL, OUTSIDE, EMPTY = (0, 0, 40, 40), (0, 0, 4, 40), (30, 60, 40, 40), (0, 80, 40, 40)
@@ -59,23 +60,64 @@ def test_regions_of_several_images_and_of_files(scene, tmp_path):
         assert one.across.mtf_nyquist != other.across.mtf_nyquist
 
 
-def test_images_that_take_turns_are_copied_once(scene, tmp_path):
-    other = scene[::-1].copy()
-    numbered = ((place, (scene, other)[place % 2], GOOD) for place in range(6))
-    copies = [image for _, image, _ in in_turn._on_disk(numbered, tmp_path)]
-    assert len(list(tmp_path.iterdir())) == 2
-    for place, copy in enumerate(copies):
-        np.testing.assert_array_equal(copy.read(), (scene, other)[place % 2])
+def refilled(scene):
+    """Two edges and again, in an array that is filled anew for every pair, and so is the region."""
+    buffer, roi = np.empty((40, 40)), np.array(GOOD)
+    for col in (0, 40, 0, 40):
+        buffer[:] = scene[:, col : col + 40]
+        roi[:] = GOOD
+        yield buffer, roi
+        buffer[:], roi[:] = 0.0, -1
+
+
+def test_an_array_that_is_filled_anew_for_every_pair_is_measured_as_it_was(scene):
+    first, second, *again = ac.each_edge(refilled(scene))
+    for one, col in ((first, 0), (second, 40)):
+        alone = ac.measure_edge(scene[:, col : col + 40].copy())
+        assert without_time(one) == without_time(alone.record)
+    assert [one.across.mtf_nyquist for one in again] == [
+        one.across.mtf_nyquist for one in (first, second)
+    ]
+
+
+def test_what_waits_for_other_processes_is_as_it_was_and_leaves_no_file(scene, tmp_path):
+    waiting = list(in_turn._of_pairs(refilled(scene), 0.5, tmp_path))
+    assert len(list(tmp_path.iterdir())) == 4
+    for place, one in enumerate(waiting):
+        region = one.pixels()
+        col = (0, 40)[place % 2]
+        np.testing.assert_array_equal(region.pixels, scene[:, col : col + 40])
+        assert (region.gsd.row_m, one.where["roi"]) == (0.5, list(GOOD))
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_region_of_a_large_image_takes_its_surroundings_along_and_no_more(tmp_path):
+    image = np.random.default_rng(1).normal(size=(500, 500))
+    box = (100, 480, 60, 20)
+    [one] = in_turn._of_pairs([(image, box)], None, tmp_path)
+    assert next(tmp_path.iterdir()).stat().st_size < 100_000
+    region = one.pixels()
+    assert region.traces == read_region(image, box).traces
+    np.testing.assert_array_equal(region.image.read(ac.Box(84, 464, 92, 36)), image[84:176, 464:])
+    with pytest.raises(ac.RegionError):
+        region.image.read()
 
 
 def test_an_image_that_takes_the_place_of_another_is_not_taken_for_it(tmp_path):
     def pairs():
         for place in range(20):
-            yield place, np.full((8, 8), float(place)), None
+            yield np.random.default_rng(place).normal(size=(8, 8)), None
             gc.collect(0)
 
-    for place, copy, _ in in_turn._on_disk(pairs(), tmp_path):
-        assert float(copy.read()[0, 0]) == place
+    for place, one in enumerate(in_turn._of_pairs(pairs(), None, tmp_path)):
+        expected = np.random.default_rng(place).normal(size=(8, 8))
+        np.testing.assert_array_equal(one.pixels().pixels, expected)
+
+
+def test_one_image_is_copied_once_for_all_its_regions(scene, tmp_path):
+    waiting = list(in_turn._of_one(ac.Image.from_array(scene), REGIONS[:3], None, tmp_path))
+    assert len(list(tmp_path.iterdir())) == 1
+    np.testing.assert_array_equal(waiting[2].pixels().pixels, scene[:, 40:80])
 
 
 def test_rows_of_numbers_are_regions_and_are_named_when_refused(scene):

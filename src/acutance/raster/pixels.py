@@ -19,6 +19,7 @@ from acutance.raster.region import Box
 __all__ = [
     "ArrayPixels",
     "NpyPixels",
+    "PartPixels",
     "PixelSource",
     "equals_nodata",
     "is_nan",
@@ -63,6 +64,26 @@ class ArrayPixels:
         if self.nodata is not None:
             values[equals_nodata(raw, self.nodata)] = np.nan
         return values
+
+
+@dataclass(frozen=True, eq=False)
+class PartPixels:
+    """The pixels of one box of an image, in memory: no others can be read.
+
+    Parameters
+    ----------
+    box : Box
+    values : (height, width) array
+        As the image gave them, NaN where unusable.
+    """
+
+    box: Box
+    values: Floats
+
+    def read(self, box: Box) -> Floats:
+        inner = Box(box.row - self.box.row, box.col - self.box.col, *box.shape)
+        inner.require_inside(self.box.shape)
+        return np.array(self.values[inner.slices])
 
 
 @dataclass(frozen=True)

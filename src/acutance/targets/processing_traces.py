@@ -19,6 +19,7 @@ from acutance.raster import Box, Image
 __all__ = [
     "ProcessingTraces",
     "sample_boxes",
+    "surroundings",
     "traces_of_parts",
     "traces_of_pixels",
     "with_surroundings",
@@ -74,10 +75,24 @@ def with_surroundings(found: ProcessingTraces, image: Image, box: Box) -> Proces
     box : Box
         Where the region lies in it.
     """
-    frame = box.grown(_AROUND_PX).intersection(Box.whole(image.shape))
-    if frame is None or frame == box or max(box.shape) > _SAMPLE_PX:
+    frame = surroundings(image.shape, box)
+    if frame is None:
         return found
     return found._replace(blocks=max(found.blocks, jpeg_blocks(image.read(frame))))
+
+
+def surroundings(shape: tuple[int, int], box: Box) -> Box | None:
+    """A region with what is read around it for its traces; ``None`` if it does without.
+
+    Parameters
+    ----------
+    shape : (rows, cols)
+        Of the image.
+    box : Box
+        Where the region lies in it.
+    """
+    frame = box.grown(_AROUND_PX).intersection(Box.whole(shape))
+    return None if frame == box or max(box.shape) > _SAMPLE_PX else frame
 
 
 def traces_of_parts(parts: Iterable[Floats]) -> ProcessingTraces:

@@ -16,9 +16,11 @@ from acutance.errors import ImageError, NoDataError, RegionError
 from acutance.numerics.clipping import NOT_CLIPPED, ClipLevels
 from acutance.raster import Box, Fill, Gsd, Image, Region, find_fill
 from acutance.raster.gsd import gsd_in_words
+from acutance.raster.pixels import PartPixels
 from acutance.targets.check import MAX_RATIO, Check, Limits, answer
 from acutance.targets.processing_traces import (
     ProcessingTraces,
+    surroundings,
     traces_of_pixels,
     with_surroundings,
 )
@@ -103,6 +105,16 @@ class RegionPixels:
     def traces(self) -> ProcessingTraces:
         """What processing left in the pixels and around: the same for all edges of a region."""
         return with_surroundings(traces_of_pixels(self.pixels), self.image, self.box)
+
+    def apart(self) -> RegionPixels:
+        """The same, apart from its image: what a measurement reads of it later is read now."""
+        frame = surroundings(self.image.shape, self.box)
+        kept = (
+            PartPixels(self.box, self.pixels)
+            if frame is None
+            else PartPixels(frame, self.image.read(frame))
+        )
+        return replace(self, image=replace(self.image, source=kept))
 
 
 def image_info(image: Image, box: Box, gsd: Gsd | None, region: str = "") -> ImageInfo:

@@ -123,30 +123,24 @@ def measure_edge(
     >>> print(ac.measure_edge(image).mtf_nyquist)  # doctest: +SKIP
     0.2893 ± 0.0061
     """
-    return finished(edge_steps(image, roi, gsd_m=gsd_m, method=method, options=options))
+    chosen = chosen_options(options, EdgeOptions)
+    return finished(edge_steps(read_region(image, roi, gsd_m), method=method, options=chosen))
 
 
 def edge_steps(
-    image: Image | ArrayLike,
-    roi: RoiLike = None,
-    *,
-    gsd_m: float | Gsd | None = None,
-    method: str = "spline",
-    options: EdgeOptions | None = None,
+    region: RegionPixels, *, method: str, options: EdgeOptions
 ) -> Steps[StraightMeasurement]:
-    """`measure_edge` in steps: the strongest edge that can be measured.
+    """`measure_edge` of pixels that were read, in steps: the strongest edge that can be measured.
 
     Raises
     ------
     AcutanceError
         If none can, the strongest's.
     """
-    chosen = chosen_options(options, EdgeOptions)
-    region = read_region(image, roi, gsd_m)
     first: TargetError | None = None
     for segment in find_segments(region.pixels, _CANDIDATES):
         try:
-            return (yield from segment_steps(region, segment, method, chosen))
+            return (yield from segment_steps(region, segment, method, options))
         except TargetError as error:
             first = first or error
     raise _named(_nothing_found(region) if first is None else _torn(first, region), region)

@@ -151,14 +151,16 @@ def each_edge(
     Parameters
     ----------
     image : Image, (rows, cols) array_like, or iterable of pairs
-        One image; or, without `regions`, pairs (image, region) of several.
+        One image; or, without `regions`, pairs (image, region) of several. The array of a pair may
+        be filled anew for the next one; a file has to stay as it is until its result is there.
     regions : iterable of regions, optional
         As in `acutance.measure_edge`.
     gsd_m, method, options
         As in `acutance.measure_edge`.
     workers : int, optional
         Processes, each on one core. With more than one, a script has to guard its own start by
-        ``if __name__ == "__main__"``, and images in memory are kept in temporary files meanwhile.
+        ``if __name__ == "__main__"``; one image in memory, and regions of such images in pairs,
+        are kept in temporary files meanwhile.
 
     Returns
     -------
@@ -173,8 +175,8 @@ def each_edge(
     """
     require_method(method)
     chosen = chosen_options(options, EdgeOptions)
-    measure = partial(edge_steps, gsd_m=gsd_m, method=method, options=chosen)
-    return in_turn(measure, image, regions, workers=workers)
+    measure = partial(edge_steps, method=method, options=chosen)
+    return in_turn(measure, image, regions, gsd_m=gsd_m, workers=workers)
 
 
 @one_thread

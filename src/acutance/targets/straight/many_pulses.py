@@ -90,7 +90,7 @@ def each_pulse(
     """
     require_pulse_method(method)
     measure = partial(
-        pulse_steps, width_px=width_px, width_m=width_m, gsd_m=gsd_m, fit_width=fit_width,
-        method=method, options=chosen_options(options, PulseOptions),
+        pulse_steps, width_px=width_px, width_m=width_m, fit_width=fit_width, method=method,
+        options=chosen_options(options, PulseOptions),
     )  # fmt: skip
-    return in_turn(measure, image, regions, workers=workers)
+    return in_turn(measure, image, regions, gsd_m=gsd_m, workers=workers)

@@ -129,46 +129,43 @@ def measure_pulse(
     NoEdgeError, PhaseError, SupportError
         If there is no pulse, it is aligned with the grid, or too little of it is there.
     """
+    chosen = chosen_options(options, PulseOptions)
     return finished(
         pulse_steps(
-            image, roi, width_px=width_px, width_m=width_m, gsd_m=gsd_m, fit_width=fit_width,
-            method=method, options=options,
+            read_region(image, roi, gsd_m), width_px=width_px, width_m=width_m,
+            fit_width=fit_width, method=method, options=chosen,
         )
     )  # fmt: skip
 
 
 def pulse_steps(
-    image: Image | ArrayLike,
-    roi: RoiLike = None,
+    region: RegionPixels,
     *,
-    width_px: float | None = None,
-    width_m: float | None = None,
-    gsd_m: float | Gsd | None = None,
-    fit_width: bool = True,
-    method: str = "spline",
-    options: PulseOptions | None = None,
+    width_px: float | None,
+    width_m: float | None,
+    fit_width: bool,
+    method: str,
+    options: PulseOptions,
 ) -> Steps[StraightMeasurement]:
-    """`measure_pulse` in steps."""
+    """`measure_pulse` of pixels that were read, in steps."""
     require_flags(fit_width=fit_width)
-    chosen = chosen_options(options, PulseOptions)
     estimate = require_pulse_method(method)
-    region = read_region(image, roi, gsd_m)
     stated_px = _stated_width(region, width_px, width_m)
     free = fit_width or stated_px is None
     with _naming_the_width(region, stated_px):
         trimmed, extent = find_pulse(region.pixels, stated_px, fit_width=free)
-    require_phases(trimmed, trimmed.line, limit_of("sample_phases", chosen.limits))
+    require_phases(trimmed, trimmed.line, limit_of("sample_phases", options.limits))
     if stated_px is not None and method in PUBLISHED_PULSE:
         trimmed = replace(trimmed, pulse_width_px=stated_px)
     yield
     with _naming_the_width(region, stated_px):
-        found = yield from estimate(trimmed, free, chosen)
+        found = yield from estimate(trimmed, free, options)
     if free and stated_px is not None and _is_far(found[1].value, stated_px):
         # Far from the first guess the fit may have stopped in a local minimum: begin near the end.
         trimmed, extent = find_pulse(region.pixels, found[1].value)
-        found = yield from estimate(trimmed, free, chosen)
+        found = yield from estimate(trimmed, free, options)
     yield
-    return _measurement(region, trimmed, extent, found, method, chosen, stated_px)
+    return _measurement(region, trimmed, extent, found, method, options, stated_px)
 
 
 @contextmanager
