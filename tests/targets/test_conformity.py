@@ -91,6 +91,34 @@ def test_what_was_stated_takes_more_measurements():
     assert f"about {count} measurements" in answer.summary
 
 
+def test_the_causes_and_the_advice_are_those_of_the_number_that_is_asked_for():
+    """Of FWHM what the prior is left with is more than the border, of the MTF the border is all."""
+    options = ac.EdgeOptions(target_softness_px=ac.Estimate(0.3, 0.01))
+    image, _ = simulate.edge(
+        SENSOR, angle_deg=8, shape=(40, 30), snr=400, rng=np.random.default_rng(1)
+    )
+    found = ac.measure_edge(image, options=options)
+    said = {}
+    for name, deviations in (("mtf_nyquist", 0.9), ("fwhm_px", 0.7)):
+        number = getattr(found, name)
+        (answer,) = found.conformity(f"{name} >= {number.value - deviations * number.std:.8f}")
+        said[name] = answer.summary
+    assert "would not tell: softness of the target's border leaves" in said["mtf_nyquist"]
+    assert said["mtf_nyquist"].endswith("state it with less uncertainty, or measure another target")
+    assert "would not tell: shape left to the prior and softness of the" in said["fwhm_px"]
+    assert said["fwhm_px"].endswith("a longer target, or one of more contrast, has less of it")
+
+
+def test_a_share_that_is_small_is_named_all_the_same(edge):
+    number = edge.rer
+    share = systematic_share(edge.budget, "across", "rer")
+    assert share < 0.1
+    limit = number.value - 1.6449 * 0.9 * math.sqrt(share) * number.std
+    (answer,) = edge.conformity(f"rer >= {limit:.8f}")
+    assert "shape left to the prior leaves" in answer.summary
+    assert "a longer target" in answer.summary
+
+
 def test_who_is_content_with_less_confidence_is_told(edge):
     number = edge.mtf_nyquist
     limit = ToleranceLimit("mtf_nyquist", ">=", number.value - 0.5 * number.std, confidence=0.65)

@@ -62,7 +62,7 @@ _STRICT = re.compile(r"[<>](?!\s*=)")
 _MOST: Final = 1000
 """More measurements than this are no answer."""
 _NAMED: Final = 0.1
-"""Stated parts are named from this share of the variance of all of them on."""
+"""Terms that measurements share are named from this share of the variance of all of them on."""
 
 
 @dataclass(frozen=True)
@@ -326,8 +326,8 @@ def _what_would_tell(
         return "the value is too near the limit to be told by more measurements"
     shared = min(_shared_std(parts, orientation, limit.metric), number.std)
     if shared >= needed:
-        causes = _shared_causes(parts, orientation)
-        words = " and ".join(TERMS[name].label for name in causes) or "they"
+        causes = _shared_causes(parts, orientation, limit.metric)
+        words = " and ".join(TERMS[name].label for name in causes)
         leave = "leaves" if len(causes) == 1 else "leave"
         advice = (
             "state it with less uncertainty, or measure another target"
@@ -356,13 +356,15 @@ def _shared_std(parts: Sequence[Measurement | Record], orientation: str, metric:
     return sum(stds) / len(stds) if stds else 0.0
 
 
-def _shared_causes(parts: Sequence[Measurement | Record], orientation: str) -> list[str]:
-    """The terms that all measurements share, the largest first."""
+def _shared_causes(
+    parts: Sequence[Measurement | Record], orientation: str, metric: str
+) -> list[str]:
+    """The terms of a number that all measurements share, the largest first."""
     shares = {
         name: max(
-            systematic_share(one.budget, orientation, "", frozenset((name,))) for one in parts
+            systematic_share(one.budget, orientation, metric, frozenset((name,))) for one in parts
         )
         for name in SYSTEMATIC_TERMS
     }
     ranked = sorted(shares, key=lambda name: (-shares[name], name))
-    return [name for name in ranked if shares[name] > _NAMED]
+    return [name for name in ranked if shares[name] > _NAMED * sum(shares.values())]
