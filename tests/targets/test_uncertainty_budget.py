@@ -12,6 +12,8 @@ from acutance.report import page, text
 from acutance.targets.uncertainty_budget import (
     MAIN_NUMBERS,
     TERMS,
+    budget_rows,
+    least_systematic_share,
     std_of_mean,
     systematic_share,
 )
@@ -141,6 +143,25 @@ def test_the_common_part_is_that_of_prior_and_statements():
     assert systematic_share(m.budget, "along", "rer") == 0
     others = [systematic_share(m.budget, "across", name) for name in ("rer", "mtf_nyquist")]
     assert systematic_share(m.budget, "across", "mtf50_cpp") >= max(others)
+
+
+def test_a_number_that_does_not_exist_says_nothing_of_the_others():
+    """A curve that does not fall to its half has no FWHM, and its budget none of it."""
+    rows = budget_rows("across", {
+        "pixel_noise": {"mtf_nyquist": 0.03, "rer": 0.02, "fwhm_px": math.nan},
+        "prior_shape": {"mtf_nyquist": 0.01, "rer": 0.01, "fwhm_px": math.nan},
+    })  # fmt: skip
+    assert systematic_share(rows, "across", "mtf_nyquist") == pytest.approx(0.1)
+    for name in ("mtf_area", "fwhm_px", "fwhm_m"):
+        assert systematic_share(rows, "across", name) == pytest.approx(0.2)
+        assert least_systematic_share(rows, "across", name) == pytest.approx(0.1)
+
+
+def test_of_numbers_none_of_which_has_a_budget_all_is_common():
+    nothing = dict.fromkeys(MAIN_NUMBERS, math.nan)
+    rows = budget_rows("across", {"pixel_noise": nothing, "prior_shape": nothing})
+    assert systematic_share(rows, "across", "rer") == 1
+    assert systematic_share(rows, "along", "rer") == 0
 
 
 def test_page_and_text_show_it():

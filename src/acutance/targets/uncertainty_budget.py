@@ -199,8 +199,9 @@ def systematic_share(
 ) -> float:
     """Part of a number's variance that does not average out over measurements of one sensor.
 
-    It is the part of `terms`. Of a number without a budget it is the largest of those that have
-    one; one in metres has that of the same in pixels.
+    It is the part of `terms`. Of a number without a budget, or that does not exist, it is the
+    largest of those that have one, and all of it where none has; one in metres has that of the
+    same in pixels.
     """
     return max(_systematic_shares(budget, direction, number, terms))
 
@@ -217,9 +218,9 @@ def _systematic_shares(
     """That of a number which has a budget, of another one those of all that have."""
     number = number.removesuffix("_m") + "_px" if number.endswith("_m") else number
     rows = [row for row in budget if row.direction == direction and row.name in terms]
-    names = (number,) if number in MAIN_NUMBERS else MAIN_NUMBERS
-    found = [sum(row.share[name] for row in rows) for name in names]
-    return [one if math.isfinite(one) else 1.0 for one in found]
+    shares = {name: sum(row.share[name] for row in rows) for name in MAIN_NUMBERS}
+    known = {name: share for name, share in shares.items() if math.isfinite(share)}
+    return [known[number]] if number in known else [*known.values()] or [1.0]
 
 
 def std_of_mean(weight: Floats, std: Floats, share: Floats, widened: float = 1.0) -> float:
