@@ -155,6 +155,8 @@ def test_the_limit_of_the_table_is_one_that_may_be_given(name):
         ("rows", -5),
         ("saturation", 1.5),
         ("repeated_pixels", 2),
+        ("blur_uniformity", 5),
+        ("double_edge", 15),
         ("correlated_noise", -2),
         ("angle_deg", 720),
     ],
@@ -163,3 +165,17 @@ def test_limits_that_mean_nothing_are_refused(name, limit):
     with pytest.raises(ac.OptionError, match=rf"limit of {name} is {limit:g}, and what"):
         EdgeOptions(limits={name: limit})
     assert EdgeOptions(limits={name: -math.inf}).limits[name] == -math.inf
+
+
+@pytest.mark.parametrize(
+    ("options", "name"),
+    [
+        (PointsOptions, "positions"),
+        (PointsOptions, "phase_gap_px"),
+        (ac.ScanOptions, "halo_share"),
+        (ac.ScanOptions, "scene_settled"),
+    ],
+)
+def test_per_cent_are_no_shares(options, name):
+    with pytest.raises(ac.OptionError, match=rf"limit of {name} is 50, and .* from 0 to 1 "):
+        options(limits={name: 50})

@@ -51,9 +51,10 @@ class Question:
 _SHARES = frozenset((
     "saturation", "outliers", "full_scale", "rim", "left_out", "coherence", "agreement",
     "worst_member", "plain_sensor", "trusted_share", "ideal_share", "strange_share",
-    "repeated_pixels",
+    "repeated_pixels", "positions", "phase_gap_px", "halo_share", "blur_uniformity", "double_edge",
+    "scene_settled",
 ))  # fmt: skip
-"""Questions whose answers are shares or probabilities."""
+"""Questions whose answers are shares (of a pixel, too) or probabilities, or 0 and 1."""
 _CORRELATIONS = frozenset((
     "correlated_noise", "correlation", "residual_correlation", "mirrored_ground"
 ))  # fmt: skip
