@@ -113,6 +113,13 @@ def test_a_wide_texture_has_no_seams():
     assert np.max(np.abs(steps / np.median(steps) - 1)) < 0.15
 
 
+def test_a_wide_texture_of_coarse_grain_has_none_either():
+    rng = np.random.default_rng(5)
+    fields = [texture(GENERIC, (400, 1300), 1.0, 20.0, rng) for _ in range(2)]
+    steps = np.sqrt(np.mean([np.diff(field, axis=1) ** 2 for field in fields], axis=(0, 1)))
+    assert np.max(steps) < 2 * np.median(steps)
+
+
 def test_rows_of_tarps_fill_an_image():
     tarps = tarp_rows((400, 300), 12)
     assert len(tarps) == 12

@@ -48,8 +48,8 @@ MARGIN_PX = 64
 _STEP_PX = 16
 """Sizes of a patch's window are multiples of it, so that spectra of several patches are shared."""
 
-_TILE_PX, _KERNEL_PX = 1024, 64
-"""A wide texture is filtered in tiles, which overlap by the length of its correlation."""
+_TILE_PX, _KERNEL_PX, _GRAIN_SIGMAS = 1024, 64, 4.0
+"""A wide texture is filtered in tiles, which overlap by what the sensor scatters, or the grain."""
 
 
 @dataclass(frozen=True)
@@ -387,10 +387,10 @@ def _wide_texture(
     sensor: Sensor, shape: tuple[int, int], std: float, grain_px: float, rng: np.random.Generator
 ) -> Floats:
     """Texture of a large image, tile after tile, in single precision: tiles overlap and add up."""
-    side = _TILE_PX + _KERNEL_PX
+    half = max(_KERNEL_PX // 2, math.ceil(_GRAIN_SIGMAS * grain_px))
+    side = _TILE_PX + 2 * half
     grain, gain = grain_transfer(sensor, (side, side), grain_px)
     total = np.zeros(shape, np.float32)
-    half = _KERNEL_PX // 2
     for top in range(-half, shape[0] + half, _TILE_PX):
         for left in range(-half, shape[1] + half, _TILE_PX):
             white = np.zeros((side, side))
