@@ -25,10 +25,11 @@ Profile = Literal["exponential", "de-vaucouleurs"]
 
 _HALF_LIGHT_OF_SCALE: Final = 1.67834699
 """Half-light radius of an exponential disc over its scale length."""
-_VAUCOULEURS: Final = 7.66924944
-"""The constant b of exp(-b (r / r_e)^(1/4)) that puts half of the light within r_e."""
 _TAPER: Final = (4.0, 8.0)
 """Half-light radii between which a de Vaucouleurs profile is led to zero."""
+_VAUCOULEURS: Final = 7.23868376
+"""The constant b of exp(-b (r / r_e)^(1/4)) that puts half of the light within r_e, led to zero so;
+7.669 of a profile without an end, which has 15 % of its light beyond 4 r_e."""
 _MAX_FREQ: Final = 200.0
 
 
