@@ -248,7 +248,7 @@ def _others(
                 side=inside if within else _other(inside),
                 near_px=float(distances.min()),
                 far_px=LOOK_PX if wide else float(distances.max()),
-                contrast_share=-1.0 if opposite else one.contrast / abs(step),
+                contrast_share=math.copysign(1.0, -step) if opposite else one.contrast / abs(step),
             )
 
 
