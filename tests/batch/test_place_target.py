@@ -152,6 +152,17 @@ def test_what_is_not_found_is_told_the_deviation_that_counts(crs, name):
         placed(target(line, crs=crs, **{name: 1000}), image)
 
 
+def test_metres_of_uncertainty_need_a_gsd():
+    """Of a map without a unit: it was looked for within three times 2 px, which nobody stated."""
+    local = 'LOCAL_CS["works",UNIT["unknown",1]]'
+    image = image_at((1.0, 0.0, 0.0, 0.0, -1.0, 200.0), local)
+    survey = target([[50, 100], [52, 150]], crs=local, position_std_m=1)
+    with pytest.raises(NotHereError, match=r"\(position_std_m\) is not: state it") as caught:
+        placed(survey, image)
+    assert caught.value.why == "no GSD"
+    assert place_target(survey, image, image.geolocation, Gsd(0.5, 0.5)).search_px == 6
+
+
 @pytest.mark.parametrize("width", [12, 30, 100])
 def test_an_outline_grows_equally_on_every_side(width):
     """A narrow one, too: its corners alone would move along the diagonal."""

@@ -79,6 +79,17 @@ def test_metres_of_places_in_pixels_are_refused(more):
     assert targets_of(site, "targets", "pixel")[0].position_std_m == 40
 
 
+@pytest.mark.parametrize("more", [{}, {"colour": 1}])
+def test_pixels_of_places_on_the_ground_are_refused(more):
+    """They were ignored: the target was looked for within three times 5 m."""
+    refused(feature(position_std_px=30, **more), "its own is on the ground: give position_std_m")
+    site = feature(None, site="Salon de Provence", position_std_px=30)
+    with pytest.raises(OptionError, match="give position_std_m"):
+        targets_of(site, "targets", "pixel")
+    known = feature(points=((10, 20), (30, 20)), position_std_px=3)
+    assert targets_of(known, "targets", "pixel")[0].position_std_px == 3
+
+
 def test_a_site_of_the_catalogue_needs_no_geometry():
     (target,) = targets_of(feature(None, site="Salon de Provence", orientation="across"), "targets")
     assert target.shape == "Point"

@@ -59,7 +59,7 @@ class PlacedTarget:
     @property
     def std_name(self) -> str:
         """The property that states how far it is looked for, for messages."""
-        return "position_std_px" if _std_gsd(self.target, self.gsd) is None else "position_std_m"
+        return "position_std_px" if self.target.in_pixels else "position_std_m"
 
 
 def place_target(
@@ -170,16 +170,16 @@ def _square(target: SurveyedTarget, middle: Floats, gsd: Gsd | None) -> Floats:
     return middle + corners * half
 
 
-def _std_gsd(target: SurveyedTarget, gsd: Gsd | None) -> Gsd | None:
-    """The GSD by which metres of uncertainty become pixels; None where it is stated in pixels."""
-    return None if target.in_pixels else gsd
-
-
 def _search_px(target: SurveyedTarget, gsd: Gsd | None) -> float:
-    own = _std_gsd(target, gsd)
-    if own is None:
+    if target.in_pixels:
         return max(_SIGMAS * target.position_std_px, _MIN_SEARCH_PX)
-    return max(_SIGMAS * target.position_std_m / min(own.row_m, own.col_m), _MIN_SEARCH_PX)
+    if gsd is None:
+        raise NotHereError(
+            "no GSD",
+            "the GSD of the image is not known, so how many pixels the target may lie off its "
+            "place (position_std_m) is not: state it (gsd_m)",
+        )
+    return max(_SIGMAS * target.position_std_m / min(gsd.row_m, gsd.col_m), _MIN_SEARCH_PX)
 
 
 def _require_inside(placed: PlacedTarget, image: Image) -> None:

@@ -44,9 +44,9 @@ _GEOMETRY = {
 _SHAPES = tuple(dict.fromkeys(sum(_GEOMETRY.values(), ())))
 _NO_SIZE = "a Point needs size_m (or size_px), the side of the square around it"
 _STD_M, _CATALOGUE_STD_M = 5.0, 15.0
-"""Of a position by a satellite receiver in an image located by its vendor; of our catalogue, which
-has seconds of arc."""
+"""Of a satellite receiver's position in an image located by its vendor; of seconds of arc."""
 _STD_PX = 2.0
+_PLACES = {"position_std_m": "on the ground", "position_std_px": "in pixels"}
 _FREE = frozenset(("description", "source", "id", "fid"))
 """Properties that say nothing of the measurement."""
 
@@ -267,7 +267,7 @@ def _faults_beside(feature: Mapping[str, Any], given: Mapping[str, Any], crs: st
     shape, _, faults = _geometry(feature.get("geometry"), kind, crs)
     faults += _of_other_kinds(given, kind)
     if feature.get("geometry") is not None:
-        faults += _of_other_coordinates(given.get("position_std_m"), crs)
+        faults += _of_other_coordinates(given, crs)
     if shape == "Point" and not given.keys() & {"size_m", "size_px"}:
         faults.append(_NO_SIZE)
     return faults
@@ -281,11 +281,14 @@ def _of_other_kinds(names: Iterable[str], kind: str | None) -> list[str]:
     return [f"{one} is no property of the kind {kind!r}" for one in sorted(others & set(names))]
 
 
-def _of_other_coordinates(std_m: Any, crs: str) -> list[str]:
-    """A deviation in metres of a place in pixels: nothing would come of it."""
-    if crs.lower() != PIXELS or std_m is None:
-        return []
-    return ["position_std_m is of places on the ground, its own is in pixels: give position_std_px"]
+def _of_other_coordinates(given: Mapping[str, Any], crs: str) -> list[str]:
+    """A deviation in metres of a place in pixels, or the other way round: it would do nothing."""
+    own = "position_std_px" if crs.lower() == PIXELS else "position_std_m"
+    return [
+        f"{name} is of places {where}, its own is {_PLACES[own]}: give {own}"
+        for name, where in _PLACES.items()
+        if name != own and given.get(name) is not None
+    ]
 
 
 def _fault(fault: DocumentFault) -> str:
@@ -304,7 +307,7 @@ def _checked(
         std_m = _CATALOGUE_STD_M if std_m is None else std_m
     own = {name for name in given.model_fields_set if name in _OF_KIND[given.kind]}
     faults += _of_other_kinds(given.model_fields_set, given.kind)
-    faults += _of_other_coordinates(given.position_std_m, crs)
+    faults += _of_other_coordinates(dict(given), crs)
     if shape == "Point" and size_m is None and given.size_px is None:
         faults.append(_NO_SIZE)
     if given.valid_from and given.valid_to and given.valid_to < given.valid_from:
@@ -340,10 +343,7 @@ Shape = tuple[str | None, Points, list[str]]
 
 
 def _geometry(geometry: Any, kind: str | None, crs: str) -> Shape:
-    """The shape and the points of a feature, or what is wrong with them.
-
-    Of a kind that is not known all shapes are right.
-    """
+    """Shape and points of a feature, or what is wrong with them; any shape of an unknown kind."""
     if geometry is None:
         return None, (), []
     shape = geometry.get("type") if isinstance(geometry, Mapping) else None
