@@ -16,7 +16,7 @@ _MOST_PX = 1000
 
 
 def quick_look(image: Image, box: Box) -> Floats:
-    """Every so many rows and columns of a part of an image, at most 1000 of each.
+    """Every so many rows and columns of a part of an image, at most 1000 of each, all of fewer.
 
     Parameters
     ----------
@@ -24,9 +24,9 @@ def quick_look(image: Image, box: Box) -> Floats:
     box : Box
         Inside the image.
     """
-    step = math.ceil(max(box.shape) / _MOST_PX)
-    if step == 1:
+    down, right = (math.ceil(size / _MOST_PX) for size in box.shape)
+    if down == right == 1:
         return image.read(box)
-    rows = range(box.row + step // 2, box.row + box.height, step)
-    lines = [image.read(Box(row, box.col, 1, box.width))[0, step // 2 :: step] for row in rows]
+    rows = range(box.row + down // 2, box.row + box.height, down)
+    lines = [image.read(Box(row, box.col, 1, box.width))[0, right // 2 :: right] for row in rows]
     return np.array(lines)
