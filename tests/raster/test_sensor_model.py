@@ -122,5 +122,7 @@ def test_a_geotransform_goes_before(located):
 def test_images_that_are_nowhere(plain, write_raster, pixels, tmp_path):
     assert georeference_of(plain) is None
     assert georeference_of(open_image(write_raster("plain.tif", pixels))) is None
-    np.save(tmp_path / "array.npy", pixels)
-    assert georeference_of(open_image(tmp_path / "array.npy")) is None
+    for name in ("array.npy", "ARRAY.NPY"):
+        with open(tmp_path / name, "wb") as file:
+            np.save(file, pixels)
+        assert georeference_of(open_image(tmp_path / name)) is None

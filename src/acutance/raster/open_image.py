@@ -22,6 +22,7 @@ from acutance.raster.nearest_name import nearest_name
 from acutance.raster.pixels import (
     NpyPixels,
     is_nan,
+    is_npy,
     largest_count,
     require_image_array,
     require_nodata,
@@ -102,7 +103,7 @@ def open_unnamed(
     name = _as_name(path)
     band = _as_number(band, name)
     _require_file(name)
-    if name.lower().endswith(".npy"):
+    if is_npy(name):
         opened = _open_npy(name, band, gsd, nodata)
     else:
         from acutance.raster.dataset import open_dataset

@@ -23,6 +23,7 @@ __all__ = [
     "PixelSource",
     "equals_nodata",
     "is_nan",
+    "is_npy",
     "largest_count",
     "require_image_array",
     "require_nodata",
@@ -178,6 +179,11 @@ def _layout(source: NpyPixels, changed_ns: int, size: int) -> _Layout:
     array = source.map()
     down, right = array.strides
     return _Layout(array.dtype, cast(np.memmap[Any, Any], array).offset, (down, right))
+
+
+def is_npy(path: str) -> bool:
+    """Whether a name is that of a NumPy file, which GDAL does not read."""
+    return path.lower().endswith(".npy")
 
 
 def require_image_array(array: NDArray[Any], name: str) -> None:

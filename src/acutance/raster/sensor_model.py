@@ -18,6 +18,7 @@ from acutance.errors import OptionError, RegionError
 from acutance.raster.geolocation import LONLAT_CRS, Geolocation, ground_gsd, transform_points
 from acutance.raster.gsd import Gsd
 from acutance.raster.image import Image
+from acutance.raster.pixels import is_npy
 
 __all__ = ["SensorModel", "georeference_of", "modelled_gsd"]
 
@@ -143,7 +144,7 @@ def georeference_of(
     ImageError
         If the file cannot be read.
     """
-    if image.geolocation is not None or image.path is None or image.path.endswith(".npy"):
+    if image.geolocation is not None or image.path is None or is_npy(image.path):
         return image.geolocation
     from acutance.raster.dataset import opened_dataset
 

@@ -22,6 +22,7 @@ from acutance.execution.partial_folder import partial_folder
 from acutance.raster import Box, Image, SwathFill, find_swath_fill, open_image
 from acutance.raster.pixels import (
     equals_nodata,
+    is_npy,
     largest_count,
     require_image_array,
     require_nodata,
@@ -240,7 +241,7 @@ def _restore_file(
 ) -> RestoredImage:
     first = open_image(path, nodata=nodata)
     _require_other_file(path, out)
-    if path.lower().endswith(".npy"):
+    if is_npy(path):
         return _restore_npy(out, filter, first, nodata, saturation)
     from acutance.raster.rewriting import StoredWindow, rewrite_image, stored_tags
 
@@ -296,7 +297,7 @@ def _restore_npy(
     saturation: float | None,
 ) -> RestoredImage:
     """An array in a NumPy file, into another."""
-    if not out.lower().endswith(".npy"):
+    if not is_npy(out):
         raise OptionError(f"out is {out}: an image in a .npy file is written as one, name a .npy")
     source: Any = image.source
     pixels, counts = restore_array(source.map(), filter, nodata=nodata, saturation=saturation)

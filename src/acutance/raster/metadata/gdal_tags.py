@@ -9,6 +9,7 @@ from typing import Any
 from acutance.raster.metadata.findings import Findings, find, number, word
 from acutance.raster.metadata.gml import read_gml
 from acutance.raster.metadata.times import has_zone, is_day, time_or_day
+from acutance.raster.pixels import is_npy
 from acutance.raster.restored_tag import OF_RESTORED, RESTORED_TAG
 
 __all__ = ["FileTags", "file_tags", "read_tags"]
@@ -62,7 +63,7 @@ def file_tags(path: str) -> FileTags:
     ImageError
         If the file cannot be read.
     """
-    if path.lower().endswith(".npy"):
+    if is_npy(path):
         return FileTags()
     from acutance.raster.dataset import opened_dataset
 
