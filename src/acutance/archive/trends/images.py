@@ -26,6 +26,10 @@ _HUBER_SQUARE: Final = 0.9209
 """Mean square of a standard normal number cut off there."""
 _PASSES: Final = 30
 _MAX_RATIO: Final = 1e6
+_TURNS: Final = 3
+_STEPS_A_TURN: Final = 5
+"""How often the scale of joined images and their means are fitted: a far image widens the scale
+less once the mean has left it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,24 +190,31 @@ def joined_images(images: ImageMeans, most: int) -> ImageMeans:
     """At most so many places: neighbours in time are joined, each with the scatter it shows."""
     if images.size <= most:
         return images
-    parts = parts_of_places(images.size, most)
-    centre = np.array([np.median(images.value[part]) for part in parts])
-    deviation = np.concatenate([
-        np.abs(images.value[part] - one) / np.sqrt(1 - 1 / part.size)
-        for part, one in zip(parts, centre, strict=True) if part.size > 1
-    ])  # fmt: skip
-    scale = max(1.4826 * float(np.median(deviation)), 1e-12)
-    value, variance = np.empty(most), np.empty(most)
-    for at, part in enumerate(parts):
-        mean = centre[at]
-        for _ in range(5):
-            off = np.abs(images.value[part] - mean) / scale
-            weight = np.minimum(1.0, _HUBER / np.maximum(off, 1e-9))
-            mean = float(np.average(images.value[part], weights=weight))
-        value[at], variance[at] = mean, scale**2 / part.size
+    count = np.array([part.size for part in parts_of_places(images.size, most)])
+    place = np.repeat(np.arange(most), count)
+    value, scale = _places(images.value, place, count)
     return ImageMeans(
-        np.array([images.when[part].mean() for part in parts]), value, variance,
-        np.array([images.count[part].sum() for part in parts]), np.full(most, -1),
+        np.bincount(place, images.when) / count, value, scale**2 / count,
+        np.bincount(place, images.count).astype(np.int64), np.full(most, -1),
         images.within_std, images.typical_std, images.systematic_std,
         images.images, scale,
     )  # fmt: skip
+
+
+def _places(
+    value: Floats, place: NDArray[np.intp], count: NDArray[np.int64]
+) -> tuple[Floats, float]:
+    """Huber's means of the places, and the scale of the images about them, fitted in turns."""
+    mean = np.bincount(place, value) / count
+    several = count[place] > 1
+    # So many of a place deviate from their own mean by less than they scatter.
+    share = 1 / np.sqrt(1 - 1 / count[place][several])
+    scale = 0.0
+    for _ in range(_TURNS):
+        deviation = np.abs(value - mean[place])[several] * share
+        scale = max(1.4826 * float(np.median(deviation)), 1e-12)
+        for _ in range(_STEPS_A_TURN):
+            off = np.abs(value - mean[place]) / scale
+            weight = np.minimum(1.0, _HUBER / np.maximum(off, 1e-9))
+            mean = np.bincount(place, weight * value) / np.bincount(place, weight)
+    return mean, scale
