@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
-from acutance.archive.trends import Series
+from acutance.archive.specification import Requirement
+from acutance.archive.specification_check import check_requirement
+from acutance.archive.trends import Series, fit_trend
 from acutance.archive.trends.images import (
     ImageMeans,
     image_means,
@@ -13,7 +17,9 @@ from acutance.archive.trends.images import (
     parts_of_places,
 )
 
+Make = Callable[..., Series]
 PLACES = 200
+LEVEL = 0.16
 
 
 def places_of(value: np.ndarray, std: float = 0.0) -> ImageMeans:
@@ -49,3 +55,35 @@ def test_far_images_widen_the_scale_little(images: int) -> None:
         value[rng.random(images) < 0.03] += 0.4
         scales.append(scale_of(places_of(value)))
     assert 0.98 < np.mean(scales) / 0.05 < 1.11
+
+
+@pytest.mark.parametrize("images", [400, 1000])
+def test_joined_images_scatter_beyond_what_is_stated_of_them(images: int) -> None:
+    rng = np.random.default_rng(9)
+    many = [places_of(1 + np.hypot(0.04, 0.03) * rng.normal(size=images), 0.03) for _ in range(20)]
+    assert np.mean([one.scatter for one in many]) == pytest.approx(0.04, rel=0.05)
+    # Deviations that are stated too large leave no scatter.
+    assert places_of(1 + 0.02 * rng.normal(size=images), 0.03).scatter == 0
+
+
+def test_a_stated_deviation_counts_once_in_what_another_image_gives(series_of: Make) -> None:
+    """Twice, the scatter between images was .072, and one more image 1 ± .094."""
+    series = series_of(images=1000, scatter=0.04, std=0.06)
+    trend = fit_trend(series)
+    one = float(np.hypot(0.04, 0.06))
+    assert trend.relative_scatter == pytest.approx(0.04, rel=0.2)
+    assert trend.predict("2022-07-01").std / LEVEL == pytest.approx(one, rel=0.06)
+    bands = trend.bands()
+    low, high = (np.interp(series.when, bands.when, end) for end in bands.images95)
+    assert 0.935 < np.mean((low < series.value) & (series.value < high)) < 0.97
+
+
+def test_as_many_more_images_are_asked_for_as_their_whole_deviation_needs(series_of: Make) -> None:
+    """The stated deviation counted twice: 1.7 times as many."""
+    series = series_of(images=1000, scatter=0.04, std=0.06)
+    limit = 0.9988 * LEVEL
+    answer = check_requirement(Requirement(metric="mtf_nyquist", minimum=limit), series)
+    assert answer.mean is not None
+    wanted = (answer.mean.value - limit) / 1.645
+    more = (LEVEL * np.hypot(0.04, 0.06)) ** 2 * (1 / wanted**2 - 1 / answer.mean.std**2)
+    assert answer.more_images == pytest.approx(more, rel=0.15)

@@ -54,7 +54,7 @@ class ImageMeans(ShortRepr):
     images : int
         Number of images: that of the places, or more where very many were joined.
     scatter : float
-        Between the images that were joined; 0 where none were.
+        Between the images that were joined, beyond their stated deviations; 0 where none were.
     """
 
     when: Floats
@@ -193,11 +193,13 @@ def joined_images(images: ImageMeans, most: int) -> ImageMeans:
     count = np.array([part.size for part in parts_of_places(images.size, most)])
     place = np.repeat(np.arange(most), count)
     value, scale = _places(images.value, place, count)
+    # The images about their places show what is stated of them, and what they scatter beyond it.
+    beyond = max(scale**2 - float(np.median(images.variance)), 0.0)
     return ImageMeans(
         np.bincount(place, images.when) / count, value, scale**2 / count,
         np.bincount(place, images.count).astype(np.int64), np.full(most, -1),
         images.within_std, images.typical_std, images.systematic_std,
-        images.images, scale,
+        images.images, float(np.sqrt(beyond)),
     )  # fmt: skip
 
 
