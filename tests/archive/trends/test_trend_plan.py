@@ -102,6 +102,22 @@ def test_an_archive_tells_scatter_deviation_pace_and_images(
     assert min(options.earlier) == 0
 
 
+def test_every_image_of_a_joined_trend_counts_in_a_plan(
+    series_of: Callable[..., Series],
+) -> None:
+    """Places counted as an image each: 200 of 2100, with the deviation of a place."""
+    series = series_of(images=2100, years=10.0, scatter=0.06, std=0.03)
+    options = TrendPlanOptions.of_trend(fit_trend(series), draws=0, years=(2.0,))
+    assert len(options.earlier) == 2100
+    assert options.scatter == pytest.approx(0.06, rel=0.1)
+    assert options.std == pytest.approx(0.03, rel=0.01)
+    (watch,) = plan_trend(options).designs
+    new = watch.images - 2100
+    years = np.append(series.when - series.when.max(), np.linspace(0, 2, new))
+    exact = math.hypot(0.06, 0.03) / (np.std(years) * math.sqrt(years.size))
+    assert watch.bound == pytest.approx(exact, rel=0.08)
+
+
 @pytest.mark.parametrize(
     ("wrong", "words"),
     [
@@ -124,6 +140,8 @@ def test_options_that_mean_nothing_are_refused(wrong: dict[str, object], words: 
 def test_too_few_and_too_many_images_are_refused() -> None:
     with pytest.raises(OptionError, match="a pace of 1 a year over 2 years gives 2 images"):
         plan_trend(replace(THEORY, images_per_year=(1.0,)))
+    with pytest.raises(OptionError, match="gives 1 image, with 1 that there are already"):
+        plan_trend(replace(THEORY, images_per_year=(0.5,), years=(2.0,), earlier=(0.0,)))
     with pytest.raises(OptionError, match="up to 2000 are planned"):
         plan_trend(replace(THEORY, images_per_year=(366.0,), years=(10.0,)))
 

@@ -78,6 +78,20 @@ class ImageMeans(ShortRepr):
         """Whether a place stands for several images."""
         return self.images > self.size
 
+    @property
+    def images_by_place(self) -> NDArray[np.int64]:
+        """How many images every place stands for, (j,)."""
+        return np.array([part.size for part in parts_of_places(self.images, self.size)])
+
+    @property
+    def image_std(self) -> float:
+        """Typical standard deviation of the mean of one image, without the scatter between images.
+
+        Of joined images what the places show of it: less than is stated where that is too much.
+        """
+        square = float(np.median(self.variance * self.images_by_place)) - self.scatter**2
+        return float(np.sqrt(max(square, 0.0)))
+
     def surround(self, year: float) -> bool:
         """Whether there are images before a date and from it on, which show what it changed."""
         return bool(self.when[0] < year <= self.when[-1])

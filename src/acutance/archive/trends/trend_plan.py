@@ -12,6 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from acutance.archive.counted import counted
 from acutance.archive.trends.fit_trend import fit_trend
 from acutance.archive.trends.series import Series
 from acutance.archive.trends.trend import Trend
@@ -120,12 +121,13 @@ class TrendPlanOptions:
                 f"{trend.title}: the level {trend.level} may be 0, and a plan is in shares of it; "
                 "plan with the scatter of another metric"
             )
-        when, level = trend.images.when, abs(trend.level.value)
+        images, level = trend.images, abs(trend.level.value)
+        when = np.repeat(images.when, images.images_by_place)
         span = float(when[-1] - when[0])
         found: dict[str, Any] = {
-            "images_per_year": (min(max((trend.images.images - 1) / span, 0.1), 366.0),),
+            "images_per_year": (min(max((when.size - 1) / span, 0.1), 366.0),),
             "scatter": min(trend.relative_scatter, 1.0),
-            "std": min(float(np.sqrt(np.median(trend.images.variance))) / level, 1.0),
+            "std": min(images.image_std / level, 1.0),
             "earlier": tuple((when[-1] - when).tolist()),
         }
         return cls(**{**found, **others})
@@ -249,7 +251,7 @@ def plan_trend(
     Raises
     ------
     OptionError
-        If a design has fewer than three images, or more than 2000.
+        If a design has fewer than three images, or more than 2000 that are yet to be taken.
 
     Examples
     --------
@@ -271,11 +273,13 @@ def plan_trend(
 def _bounded(options: TrendPlanOptions, pace: float, years: float) -> PlannedWatch:
     """A design as a straight line through its images would have it."""
     new = round(pace * years)
-    images = len(options.earlier) + new
-    if not MIN_IMAGES <= images <= _MAX_IMAGES:
+    earlier = len(options.earlier)
+    images = earlier + new
+    if images < MIN_IMAGES or new > _MAX_IMAGES:
+        beside = f", with {earlier} that there are already" if earlier else ""
         raise OptionError(
-            f"a pace of {pace:g} a year over {years:g} years gives {images} images: a trend needs "
-            f"{MIN_IMAGES}, and up to {_MAX_IMAGES} are planned"
+            f"a pace of {pace:g} a year over {years:g} years gives {counted(new, 'image')}"
+            f"{beside}: a trend needs {MIN_IMAGES}, and up to {_MAX_IMAGES} are planned"
         )
     # Of uniform dates the variance is a twelfth of the square of the time.
     squares = new * years**2 / 12
