@@ -152,5 +152,4 @@ def _bad_days(images: ImageMeans, posterior: TrendPosterior, series: Series) -> 
 def _expected(images: ImageMeans, posterior: TrendPosterior) -> tuple[Floats, Floats]:
     """Mean of the posterior at every image, and the scale of its scatter."""
     mean, _ = posterior.of(posterior.rows(images.when))
-    scatter = float(posterior.share @ posterior.scatter)
-    return posterior.share @ mean, np.sqrt(scatter**2 + images.variance)
+    return posterior.share @ mean, np.sqrt(posterior.typical_scatter**2 + images.variance)

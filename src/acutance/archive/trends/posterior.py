@@ -96,6 +96,11 @@ class TrendPosterior(ShortRepr):
         """Number of steps of every density, (q,)."""
         return np.asarray(np.isfinite(self.step_low).sum(axis=1))
 
+    @property
+    def typical_scatter(self) -> float:
+        """Mean scale of the scatter between what it was fitted to: images, or joined ones."""
+        return float(self.share @ self.scatter)
+
     def those(self, mask: NDArray[np.bool_]) -> TrendPosterior:
         """The densities of a mask, their shares made to sum to 1."""
         share = self.share[mask]

@@ -38,6 +38,15 @@ __all__ = ["trend_page", "trend_plate", "trend_verdict"]
 _MAX_IMAGES = 400
 _WORTH = 0.1
 _LEVEL = 0.95
+_SINGLE = (
+    "Deviation from the trend in units of the image's own standard deviation and the scatter "
+    "between images together."
+)
+_JOINED = (
+    "Means of images that follow one another, with deviations by the scatter of these images. "
+    "Deviation from the trend in units of that deviation and the scatter between such means "
+    "together."
+)
 
 
 def trend_page(trend: Trend, *, limit: float | None = None, command: str | None = None) -> str:
@@ -204,7 +213,7 @@ def _images_table(trend: Trend) -> Table:
     """Every image with its mean and how far it is from the trend, in its own deviations."""
     images = trend.images
     expected = trend.bands(images.when).mean
-    scale = np.sqrt(images.variance + trend.scatter.value**2)
+    scale = np.hypot(np.sqrt(images.variance), trend.posterior.drifting().typical_scatter)
     bad = are_bad(trend)
     rows: list[tuple[str, ...]] = []
     alerts = set()
@@ -217,8 +226,7 @@ def _images_table(trend: Trend) -> Table:
             _value(mean), signed((images.value[at] - expected[at]) / scale[at]),
         ))  # fmt: skip
     left = images.size - len(rows)
-    notes = ["Deviation from the trend in units of the image's own standard deviation and the "
-             "scatter between images together."]  # fmt: skip
+    notes = [_JOINED if images.are_joined else _SINGLE]
     if left:
         notes.append(f"The first {len(rows)}; {left} more are not listed.")
     return Table(
