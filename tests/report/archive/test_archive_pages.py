@@ -18,7 +18,7 @@ from acutance.archive import Archive, Entry, ImageEntry, TargetEntry
 from acutance.archive.mean_of_images import mean_of_images
 from acutance.archive.published import published_entries
 from acutance.archive.specification import Specification
-from acutance.archive.trends import Event, Series, fit_trend
+from acutance.archive.trends import Event, Series, date_of, fit_trend
 from acutance.errors import NothingSelectedError, OptionError
 from acutance.report.archive import sensor_page, trend_figure, trend_page
 from acutance.report.archive.sensor_state import SeriesState, states_of
@@ -28,6 +28,7 @@ from acutance.report.archive.sensor_tables import (
     specification_table,
     state_table,
 )
+from acutance.report.archive.trend_figure import are_bad
 from acutance.report.archive.trend_page import trend_plate, trend_verdict
 from acutance.report.archive.wording import percent, signed, with_minus
 from acutance.report.labels import MISSING, word_estimate
@@ -151,6 +152,17 @@ def test_a_bad_day_is_marked_and_does_not_flatten_the_drawing():
     assert 0.2 < low < high < 0.4
     assert [one for one in axes.get_lines() if one.get_marker() == "^"]
     assert '<tr class="alert">' in trend_page(trend)
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_an_image_with_the_value_of_a_bad_day_on_another_day_is_not_marked():
+    series = series_of(count=60, rate=-0.04, step=0.0)
+    value = np.round(series.value, 2)
+    value[8] = value[-1]
+    trend = fit_trend(replace(series, value=value))
+    assert [day.date for day in trend.bad_days] == [date_of(series.when[8])]
+    assert np.flatnonzero(are_bad(trend)).tolist() == [8]
+    assert trend_page(trend).count('<tr class="alert">') == 1
 
 
 def test_steps_events_and_limits_are_drawn_where_they_are():

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from acutance.archive.trends.series import date_of
 from acutance.curves.grid import Floats
 from acutance.curves.metric_words import METRIC_WORDS
 from acutance.report.archive.dates import axis_days, date_axis, day_on_axis
@@ -151,7 +152,9 @@ def _draw_images(axes: Axes, trend: Trend, low: float, high: float) -> None:
 
 def are_bad(trend: Trend) -> NDArray[np.bool_]:
     """Which images are far from the trend, (j,)."""
-    return np.isin(trend.images.value, [day.value for day in trend.bad_days])
+    bad = {(day.date, day.value) for day in trend.bad_days}
+    found = zip(trend.images.when.tolist(), trend.images.value.tolist(), strict=True)
+    return np.array([(date_of(when), value) in bad for when, value in found])
 
 
 def _draw_limits(axes: Axes, limits: Sequence[float]) -> None:
