@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 
 import acutance as ac
+from acutance.curves import Otf2d
 from acutance.report import niirs_text
+from acutance.restoration.filtered_otf import FilteredOtf
+from acutance.restoration.giqe import GiqeInputs, giqe
+from acutance.restoration.known_otf import known_otf
+from acutance.restoration.niirs_change import giqe_readings, niirs_changes
 
 
 @pytest.mark.parametrize(
@@ -234,6 +239,25 @@ def test_a_change_has_the_sign_of_the_numbers_it_is_made_of(sharpening):
     expected -= 0.344 * (sharpening.noise_gain - 1) / sharpening.snr
     assert change[4].value == pytest.approx(expected, abs=1e-3)
     assert 0 < change[4].std < 0.1
+
+
+def test_a_change_has_the_deviation_of_an_rer_that_both_directions_share(edges):
+    """Slopes to one side count the lower RER of GIQE 5 alone: 2/3 of the deviation."""
+    kernel = np.array([[0, -0.1, 0], [-0.1, 1.4, -0.1], [0, -0.1, 0]])
+    gain = float(np.linalg.norm(kernel))
+    known = known_otf(edges[0], isotropic=True).otf
+    before = [known.response(angle) for angle in (0.0, 90.0)]
+    restored = Otf2d(FilteredOtf(known.model, kernel), known.gsd_m)
+    after = [restored.response(angle) for angle in (0.0, 90.0)]
+    (rer, *_), (row, *_) = giqe_readings(before)
+    (new_rer, *_), (new_row, *_) = giqe_readings(after)
+
+    def slope(rer, snr):
+        above, below = (giqe(GiqeInputs(1.0, one, one, snr), 5) for one in (rer + 1e-4, rer - 1e-4))
+        return (above - below) / 2e-4
+
+    true = np.linalg.norm(slope(new_rer, 80 / gain) * new_row - slope(rer, 80) * row)
+    assert niirs_changes(before, after, 80, gain)[5].std == pytest.approx(true, rel=0.01)
 
 
 def test_the_ratio_of_two_sensors_has_no_niirs():
