@@ -41,6 +41,21 @@ def test_the_text_has_both_sides_of_the_bargain(sharpening):
         assert words in text
 
 
+def test_the_noise_of_neighbours_correlates_by_the_direction_of_the_track():
+    sensor = ac.Sensor([ac.optics.Gaussian(0.4, sigma_along_px=0.6), ac.optics.Detector()])
+    document = ac.design_restoration(sensor, snr=80, noise_gain=1.5, size=7).to_dict()
+
+    def listed(track):
+        image = {**document["image"], "along_track": track}
+        filter = ac.RestorationFilter.from_dict({**document, "image": image})
+        rows = restoration_tables(filter)[1].rows
+        return {row[0].split()[-1]: row[-1] for row in rows if row[0].startswith("Correlation")}
+
+    upwards, sideways = listed("y"), listed("x")
+    assert upwards["across"] != upwards["along"]
+    assert sideways == {"across": upwards["along"], "along": upwards["across"]}
+
+
 def test_a_change_without_a_deviation_has_the_sign_of_other_numbers(sharpening):
     """Of a described sensor: version 5 loses by the noise."""
     (line,) = re.findall(r"Change of NIIRS, GIQE 5.*", restoration_text(sharpening))

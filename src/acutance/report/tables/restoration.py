@@ -66,6 +66,9 @@ def _cost(filter: RestorationFilter) -> Table:
     before_share, after_share = (f"{100 * share:.1f}" for share in filter.aliased_share)
     near = filter.noise_correlation
     middle = near.shape[0] // 2
+    of_columns, of_rows = float(near[middle, middle + 1]), float(near[middle + 1, middle])
+    is_turned = filter.along_track == "x"
+    across, along = (of_rows, of_columns) if is_turned else (of_columns, of_rows)
     rows = [
         ("Noise, of that before", "1", write_fixed(filter.noise_gain, 3)),
         ("SNR", _number(snr), _number(after)),
@@ -73,10 +76,8 @@ def _cost(filter: RestorationFilter) -> Table:
             (f"MTF at Nyquist × SNR, {name}", *_products(filter, name))
             for name in ("across", "along")
         ),
-        ("Correlation of the noise of neighbours, across", "0",
-         write_fixed(float(near[middle, middle + 1]), 3)),
-        ("Correlation of the noise of neighbours, along", "0",
-         write_fixed(float(near[middle + 1, middle]), 3)),
+        ("Correlation of the noise of neighbours, across", "0", write_fixed(across, 3)),
+        ("Correlation of the noise of neighbours, along", "0", write_fixed(along, 3)),
         ("Share of fine detail that is aliased [%]", before_share, after_share),
         *(
             (f"Change of NIIRS, GIQE {version}", "", _in_words(one))
