@@ -150,6 +150,24 @@ def test_a_slanted_edge_of_a_smeared_sensor_is_of_its_own(orientation):
     assert abs(proof.edges[0].unlike_design) < 2
 
 
+@pytest.mark.parametrize("track", ["y", "x"])
+def test_the_design_is_that_of_the_edge_on_the_grid_whatever_the_image_calls_it(track):
+    """By the name of the image's direction the edge was 11 deviations unlike its own design."""
+    optics = ac.optics
+    sensor = ac.Sensor([optics.Gaussian(0.35), optics.Detector(), optics.Smear(1.2, "along")])
+    filter = ac.design_restoration(sensor, snr=100, noise_gain=1.6, size=9)
+    image, _ = ac.simulate.edge(
+        sensor, angle_deg=7, shape=(60, 60), snr=200, rng=np.random.default_rng(5)
+    )
+    before, after = (
+        ac.Image.from_array(np.asarray(one), along_track=track)
+        for one in (image, ac.restore(image, filter))
+    )
+    (edge,) = ac.verify_restoration(before, after, filter, [(2, 2, 56, 56)]).edges
+    assert edge.designed.value == pytest.approx(filter.before.across.mtf_nyquist.value, rel=0.02)
+    assert abs(edge.unlike_design) < 2
+
+
 def test_two_lines_share_no_error(pair):
     filter, before, after = pair
     regions = [(15, 15, 90, 90)]

@@ -13,7 +13,7 @@ from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.errors import AcutanceError, NoEdgeError
-from acutance.geometry.angles import axis_difference
+from acutance.geometry.angles import axis_difference, is_nearer_columns
 from acutance.raster import Box, Image, Region
 from acutance.restoration.proof import RestorationProof, VerifiedEdge
 from acutance.restoration.restoration_filter import RestorationFilter, require_filter
@@ -196,7 +196,12 @@ def _designed(
     Of a Gaussian its logarithm varies with the square of the cosine of the angle to an axis; other
     sensors are about as far between their axes.
     """
-    names = [edge.orientation for edge in edges]
+    # The image may state another axis as that of its track than the filter.
+    names = [
+        "across" if is_nearer_columns(edge.line.normal_deg) == (filter.along_track == "y")
+        else "along"
+        for edge in edges
+    ]  # fmt: skip
     own, other = (
         [filter.before.directions[name].mtf_nyquist for name in those]
         for those in (names, [_OTHER[name] for name in names])
