@@ -10,6 +10,7 @@ import pytest
 
 import acutance as ac
 from acutance.archive import Archive, Entry, ImageEntry
+from acutance.archive.trends.measured_series import pixel_side_m
 
 OBLONG_M = (0.6, 0.8)
 
@@ -45,6 +46,28 @@ def test_slopes_of_targets_are_no_change_of_the_pixels(archive: Any, edge_record
     trend = archive.trend("fwhm_px")
     assert not trend.events
     assert not any("GSD" in note for note in trend.notes)
+
+
+@pytest.mark.parametrize("track", ["y", "x"])
+def test_the_side_is_that_of_the_axis_whatever_the_direction_is_called(
+    archive: Any, track: str
+) -> None:
+    sensor = ac.Sensor([ac.optics.Gaussian(0.4), ac.optics.Detector()])
+    for orientation in ("across", "along"):
+        pixels, _ = ac.simulate.edge(
+            sensor, angle_deg=7, shape=(60, 60), snr=200, rng=np.random.default_rng(1),
+            orientation=orientation,
+        )  # fmt: skip
+        image = ac.Image.from_array(pixels, gsd_m=ac.Gsd(*OBLONG_M), along_track=track)
+        archive.add(
+            ac.measure_edge(image), image=ImageEntry(path=f"{orientation}.tif", gsd_m=OBLONG_M)
+        )
+    rows = archive.measurements()
+    nearer_columns = np.abs(rows["normal_deg"]) < 45
+    named = {"y": "across", "x": "along"}[track]
+    assert set(rows["orientation"][nearer_columns].tolist()) == {named}
+    for mask, side in ((nearer_columns, OBLONG_M[1]), (~nearer_columns, OBLONG_M[0])):
+        assert pixel_side_m(rows, mask).tolist() == [side]
 
 
 def test_other_pixels_of_a_side_are_a_change(archive: Any, edge_record: Any) -> None:

@@ -163,7 +163,8 @@ def pixel_side_m(rows: Columns, mask: NDArray[np.bool_]) -> Floats:
         Which n of the rows.
     """
     row_m, col_m, measured = (rows[name][mask] for name in ("gsd_row_m", "gsd_col_m", "gsd_m"))
-    side = np.where(rows["orientation"][mask] == "along", row_m, col_m)
+    # Whichever axis the track is along: that decides what a direction is called.
+    side = np.where(np.abs(rows["normal_deg"][mask]) <= 45.0, col_m, row_m)
     finer = measured < np.minimum(row_m, col_m) * (1 - SAME_GSD)
     coarser = measured > np.maximum(row_m, col_m) * (1 + SAME_GSD)
     return np.where(np.isnan(side) | finer | coarser, measured, side)
