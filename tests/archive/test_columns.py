@@ -14,6 +14,8 @@ import pytest
 import acutance as ac
 from acutance.archive import Entry, ImageEntry, TargetEntry
 from acutance.errors import OptionError
+from acutance.report.archive.sensor_tables import images_table
+from acutance.targets import Rejected
 
 
 @pytest.fixture
@@ -55,6 +57,23 @@ def test_rows_are_the_oldest_first_and_what_has_no_date_last(filled):
     assert found["mtf_nyquist"][-1] == pytest.approx(0.107)
     assert found["sensor"].tolist()[-1] is None
     assert len(set(found["image_id"].tolist())) == 4
+
+
+def test_rows_of_one_content_are_one_image_whatever_is_selected(archive, entry_of):
+    """Measured under one path and refused under another it was two images, and listed twice."""
+    content = f"{5:064x}"
+    first, second = (ImageEntry(path=f"/{one}/s.tif", content=content) for one in "ab")
+    measured, other = entry_of(1, image=first), entry_of(2, image=second)
+    refused = Entry(
+        rejected=Rejected("fit", "no edge", {}), image=second,
+        target=TargetEntry(name="u", kind="edge"), key="refused",
+    )  # fmt: skip
+    archive.add_entries([measured, refused, other])
+    (number,) = set(archive.measurements()["image_id"].tolist())
+    assert archive.rejected()["image_id"].tolist() == [number]
+    assert archive.measurements(image="/b/s.tif")["image_id"].tolist() == [number]
+    (row,) = images_table(archive.measurements(), archive.rejected()).rows
+    assert row[-1] == "1"
 
 
 def test_filters(filled):

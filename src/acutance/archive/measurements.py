@@ -7,11 +7,11 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
 from functools import partial
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Final
 
 import numpy as np
 from numpy.typing import NDArray
-from sqlalchemy import Column, ColumnElement, Connection, Select, select
+from sqlalchemy import Column, ColumnElement, Connection, Select, func, select
 
 from acutance.archive.columns import Columns
 from acutance.archive.connection import Database, in_chunks
@@ -45,14 +45,15 @@ class Measurements(Columns):
 
     Columns: ``id`` (of the measurement, the same in all its directions), ``sensor``, ``level``,
     ``band``, ``site``, ``target``, ``kind``, ``method``, ``orientation``, ``acquired``, ``image``
-    (its file name), ``image_id`` (equal for measurements of one image), ``run``, ``verdict``,
-    ``snr``, ``normal_deg`` (the direction of the numbers, from the column axis towards the row
-    axis, -90 to 90; ``angle_deg`` is the same, as tables were first written), ``gsd_m`` (along the
-    direction), ``gsd_row_m`` and ``gsd_col_m`` (the sides of the image's pixels, along a column and
-    along a row), ``view_zenith_deg``, ``sun_elevation_deg``, ``measured_at``, ``restored`` (whether
-    the image was restored or sharpened before, by its notes), and every metric with its standard
-    deviation (``mtf_nyquist``, ``mtf_nyquist_std``, ...). Of the three main numbers also what of it
-    does not average out over images (``rer_systematic_std``, `acutance.archive.systematic`).
+    (its file name), ``image_id`` (equal for all rows of one image, and for its rejections, whatever
+    is selected), ``run``, ``verdict``, ``snr``, ``normal_deg`` (the direction of the numbers, from
+    the column axis towards the row axis, -90 to 90; ``angle_deg`` is the same, as tables were first
+    written), ``gsd_m`` (along the direction), ``gsd_row_m`` and ``gsd_col_m`` (the sides of the
+    image's pixels, along a column and along a row), ``view_zenith_deg``, ``sun_elevation_deg``,
+    ``measured_at``, ``restored`` (whether the image was restored or sharpened before, by its
+    notes), and every metric with its standard deviation (``mtf_nyquist``, ``mtf_nyquist_std``,
+    ...). Of the three main numbers also what of it does not average out over images
+    (``rer_systematic_std``, `acutance.archive.systematic`).
 
     Parameters
     ----------
@@ -111,7 +112,18 @@ class Rejections(Columns):
         return f"{len(self)} rejected"
 
 
-_SHARED: tuple[tuple[str, Column[Any]], ...] = (
+_SAME: Final = images.alias("same_content")
+_IMAGE_ID: Final = func.coalesce(
+    select(func.min(_SAME.c.id))
+    .where(_SAME.c.content == images.c.content, _SAME.c.content != "")
+    .scalar_subquery(),
+    images.c.id,
+)
+"""One number for all rows of an image: the first in the archive of its content, if that is known.
+
+Not the first that is selected, which measurements and rejections may have different ones of.
+"""
+_SHARED: tuple[tuple[str, ColumnElement[Any]], ...] = (
     ("id", measurements.c.id),
     ("sensor", images.c.sensor),
     ("level", images.c.level),
@@ -122,8 +134,7 @@ _SHARED: tuple[tuple[str, Column[Any]], ...] = (
     ("method", measurements.c.method),
     ("acquired", images.c.acquired),
     ("image", images.c.name),
-    ("image_id", images.c.id),
-    ("content", images.c.content),
+    ("image_id", _IMAGE_ID),
     ("run", measurements.c.run_id),
     ("view_zenith_deg", images.c.view_zenith_deg),
     ("sun_elevation_deg", images.c.sun_elevation_deg),
@@ -147,8 +158,8 @@ _REJECTED: tuple[tuple[str, Column[Any]], ...] = (
     ("values", measurements.c.rejected_values),
 )
 _TEXTS = frozenset(
-    ("sensor", "level", "band", "site", "target", "kind", "method", "image", "content",
-     "orientation", "stage", "reason", "values")
+    ("sensor", "level", "band", "site", "target", "kind", "method", "image", "orientation",
+     "stage", "reason", "values")
 )  # fmt: skip
 _MOMENTS = frozenset(("acquired", "measured_at"))
 _WHOLE = frozenset(("id", "image_id"))
@@ -162,7 +173,6 @@ def select_measurements(database: Database, selection: Selection) -> Measurement
     asked = _with_images(asked).join(directions, directions.c.measurement_id == measurements.c.id)
     asked = asked.where(directions.c.measured, *selection.of_measurements())
     found = _read_columns(database, asked, [name for name, _ in columns])
-    found["image_id"] = _labels(found["image_id"], found.pop("content"))
     found["verdict"] = _WORDS[found["verdict"].astype(int)]
     order = _oldest_first(found, found["orientation"] == "along")
     return Measurements(
@@ -186,7 +196,6 @@ def select_rejections(database: Database, selection: Selection) -> Rejections:
     asked = _with_images(select(*(column.label(name) for name, column in columns)))
     asked = asked.where(measurements.c.stage.is_not(None), *selection.of_entries())
     found = _read_columns(database, asked, [name for name, _ in columns])
-    found["image_id"] = _labels(found["image_id"], found.pop("content"))
     order = _oldest_first(found, np.zeros(len(found["id"])))
     return Rejections({name: column[order] for name, column in found.items()})
 
@@ -242,14 +251,6 @@ def _column(name: str, values: Sequence[Any]) -> NDArray[Any]:
 
 def _without_zone(when: datetime | None) -> datetime | None:
     return None if when is None else when.replace(tzinfo=None)
-
-
-def _labels(image_id: NDArray[Any], content: NDArray[Any]) -> NDArray[Any]:
-    """One number for all rows of an image: its content says which, where it is known."""
-    first: dict[str, int] = {}
-    pairs = zip(image_id.tolist(), content.tolist(), strict=True)
-    labels = [first.setdefault(known, number) if known else number for number, known in pairs]
-    return np.array(labels, np.int64)
 
 
 def _oldest_first(found: dict[str, NDArray[Any]], direction: NDArray[Any]) -> NDArray[np.intp]:
