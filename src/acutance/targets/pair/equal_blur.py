@@ -24,8 +24,7 @@ from acutance.curves.grid import Floats
 from acutance.targets.pair import tuned
 from acutance.targets.pair.gaussian_fit import GaussianFit
 from acutance.targets.pair.kernel_fit import KernelFit
-from acutance.targets.pair.noise import WHITE, noise_gram
-from acutance.targets.pair.residual_slopes import SLOPES, TileSlopes
+from acutance.targets.pair.residual_slopes import TileSlopes, noise_products
 from acutance.targets.pair.tile import TapGrid
 
 __all__ = ["blur_difference"]
@@ -73,7 +72,7 @@ def blur_difference(
         return UNKNOWN
     every = _Pixels(*(np.concatenate(column) for column in zip(*found, strict=True)))
     steepness = np.sum(every.columns[:, 1:3] ** 2, axis=1)
-    products = _noise_products(grid, gaussian, fit)
+    products = noise_products(grid, gaussian, fit)
     strong = steepness > _parting(steepness)
     fits = [_variance(every.part(which), products, fit) for which in (strong, ~strong)]
     (one, one_std), (other, other_std) = fits
@@ -96,14 +95,6 @@ def _parting(steepness: Floats) -> float:
     ordered = np.sort(steepness)
     total = np.cumsum(ordered)
     return float(ordered[np.searchsorted(total, tuned.WEAK_SHARE * total[-1])])
-
-
-def _noise_products(grid: TapGrid, gaussian: GaussianFit, fit: KernelFit) -> Floats:
-    """Products (6, 6) of the reference's noise of variance 1 in the columns and in the model."""
-    down = gaussian.down.taps(grid.down).T
-    across = gaussian.across.taps(grid.across).T
-    slopes = [gaussian.gain * np.outer(down[i], across[j]) for i, j in SLOPES]
-    return noise_gram(np.stack([*slopes, fit.kernel.taps]), grid, WHITE)
 
 
 def _variance(pixels: _Pixels, products: Floats, fit: KernelFit) -> tuple[float, float]:

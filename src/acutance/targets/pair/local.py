@@ -10,6 +10,7 @@ import numpy as np
 from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.raster import Box
+from acutance.targets.pair import tuned
 from acutance.targets.pair.residual_slopes import TileSlopes
 
 __all__ = ["LocalFit", "ResidualMap", "fit_regions"]
@@ -22,7 +23,7 @@ _MAX_SIDE = 384
 class LocalFit(ShortRepr):
     """How regions differ from the common kernel, each (rows, columns) of the map.
 
-    NaN where a region has too few pixels.
+    NaN where a region has too few pixels, or no structure beyond the reference's noise.
 
     Parameters
     ----------
@@ -98,7 +99,7 @@ class ResidualMap:
 
 
 def fit_regions(
-    tiles: Iterable[TileSlopes], shape: tuple[int, int], box: Box
+    tiles: Iterable[TileSlopes], shape: tuple[int, int], box: Box, noise: Floats
 ) -> tuple[LocalFit, ResidualMap]:
     """Fit how every region differs to the residuals of the common kernel, and map these.
 
@@ -109,6 +110,9 @@ def fit_regions(
         Rows and columns of the map.
     box : Box
         The low pixels that the map of residuals shows.
+    noise : (6, 6) array
+        Products of the reference's noise in a pixel's slopes and model. In the slopes it makes a
+        regression too small; in residuals it is the model's, with the opposite sign.
     """
     regions = shape[0] * shape[1]
     gram, projection = np.zeros((regions, 6, 6)), np.zeros((regions, 6))
@@ -128,23 +132,36 @@ def fit_regions(
             projection[region] += part.T @ rest[own]
             power[region] += float(rest[own] @ rest[own])
             count[region] += int(own.sum())
-    return _solved(gram, projection, power, count, shape), shown
+    return _solved(gram, projection, power, count, noise, shape), shown
 
 
 def _solved(
-    gram: Floats, projection: Floats, power: Floats, count: Floats, shape: tuple[int, int]
+    gram: Floats,
+    projection: Floats,
+    power: Floats,
+    count: Floats,
+    noise: Floats,
+    shape: tuple[int, int],
 ) -> LocalFit:
     updates, stds = np.full((count.size, 6), np.nan), np.full((count.size, 6), np.nan)
-    noise = np.full(count.size, np.nan)
+    residual = np.full(count.size, np.nan)
+    by_noise, into_rest = np.zeros((6, 6)), np.zeros(6)
+    by_noise[:5, :5], into_rest[:5] = noise[:5, :5], noise[:5, 5]
     for region in np.flatnonzero(count >= _MIN_PIXELS).tolist():
-        scale = np.sqrt(np.maximum(gram[region].diagonal(), 1e-300))
-        scaled = gram[region] / np.outer(scale, scale)
-        noise[region] = np.sqrt(power[region] / count[region])
+        whole, number = gram[region], count[region]
+        residual[region] = np.sqrt(power[region] / number)
+        scale = np.sqrt(np.maximum(whole.diagonal(), 1e-300))
+        scaled = whole / np.outer(scale, scale)
         if np.linalg.cond(scaled) > 1e10:
             continue
-        inverse = np.linalg.inv(scaled) / np.outer(scale, scale)
-        updates[region] = inverse @ projection[region]
-        stds[region] = noise[region] * np.sqrt(inverse.diagonal())
+        taken = number * by_noise / np.outer(scale, scale)
+        shares = np.linalg.eigvals(np.linalg.solve(scaled, taken)).real
+        if shares.max() > tuned.MAX_NOISE_SHARE:
+            continue
+        inverse = np.linalg.inv(scaled - taken) / np.outer(scale, scale)
+        updates[region] = inverse @ (projection[region] + number * into_rest)
+        variance = np.einsum("ij,jk,ik->i", inverse, whole, inverse)
+        stds[region] = residual[region] * np.sqrt(variance)
     field = [column.reshape(shape) for column in updates.T]
     deviation = [column.reshape(shape) for column in stds.T]
     return LocalFit(
@@ -155,6 +172,6 @@ def _solved(
         shift_std_px=np.maximum(deviation[1], deviation[2]),
         variance_std_px2=np.maximum(deviation[3], deviation[4]),
         gain=1 + field[0],
-        residual=noise.reshape(shape),
+        residual=residual.reshape(shape),
         pixels=count.reshape(shape),
     )

@@ -38,7 +38,7 @@ from acutance.targets.pair.pair_measurement import (
 from acutance.targets.pair.reference import ReferenceLike, reference_otf
 from acutance.targets.pair.reference_otf import ReferenceOtf
 from acutance.targets.pair.register import Registration, registered_tiles
-from acutance.targets.pair.residual_slopes import residual_slopes
+from acutance.targets.pair.residual_slopes import noise_products, residual_slopes
 from acutance.targets.pair.screen import ScreenedTiles, screened
 from acutance.targets.pair.spectral_ratio import PairSpectra, fit_spectra, pair_spectra
 from acutance.targets.pair.tile import TapGrid, core
@@ -113,7 +113,8 @@ def measure_biresolution(
         fit, (tiles.grid.across.band_cpp, tiles.grid.down.band_cpp), reference
     )  # fmt: skip
     slopes = list(residual_slopes(ground, tiles.taps, gaussian, pixel_fit))
-    local, residuals = fit_regions(slopes, tiles.map_shape, tiles.box)
+    noise = pixel_fit.high_noise.power * noise_products(tiles.taps, gaussian, pixel_fit)
+    local, residuals = fit_regions(slopes, tiles.map_shape, tiles.box, noise)
     info = image_info(coarse, tiles.box, coarse.gsd(*_middle(tiles.box)))
     return BiresolutionMeasurement(
         kind="biresolution",

@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.targets.pair.gaussian_fit import GaussianFit
 from acutance.targets.pair.kernel_fit import KernelFit
+from acutance.targets.pair.noise import WHITE, noise_gram
 from acutance.targets.pair.tile import TapGrid, Tiles, core, filtered
 
-__all__ = ["SLOPES", "TileSlopes", "residual_slopes"]
+__all__ = ["SLOPES", "TileSlopes", "noise_products", "residual_slopes"]
 
 SLOPES: Final = ((0, 0), (1, 0), (0, 1), (2, 0), (0, 2))
 """Columns of `AxisGaussian.taps` along rows and columns: gain, shifts, variances."""
@@ -73,3 +74,20 @@ def residual_slopes(
         field = core(filtered(tile, grid, down, across))[usable]
         columns = gaussian.gain * np.stack([field[:, i, j] for i, j in SLOPES], axis=1)
         yield TileSlopes(tile.place, residual, usable, columns, core(tile.regions)[usable])
+
+
+def noise_products(grid: TapGrid, gaussian: GaussianFit, fit: KernelFit) -> Floats:
+    """Products (6, 6) of the reference's noise of variance 1 in the slopes and in the model.
+
+    Parameters
+    ----------
+    grid : TapGrid
+    gaussian : GaussianFit
+        Its slopes are those of the kernel.
+    fit : KernelFit
+        The common kernel, which makes the model.
+    """
+    down = gaussian.down.taps(grid.down).T
+    across = gaussian.across.taps(grid.across).T
+    slopes = [gaussian.gain * np.outer(down[i], across[j]) for i, j in SLOPES]
+    return noise_gram(np.stack([*slopes, fit.kernel.taps]), grid, WHITE)
