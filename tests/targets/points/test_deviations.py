@@ -164,3 +164,21 @@ def test_amplitudes_at_their_prior_mean_change_the_mtf_by_per_mille():
     assert found == pytest.approx(
         [24.0, 7.9, 1.0, 0.18, 2.0, 2.8, 0.76, 1.7, 2.7, 5.7, 2.2, 0.26], rel=0.2
     )
+
+
+def test_shot_noise_far_above_that_of_the_background_is_found():
+    """Its optimum leaves larger residuals than that of equal weights, which is no worse a fit."""
+    off, gains = [], []
+    for draw in range(2):
+        rng = np.random.default_rng([13, draw])
+        noise = ac.simulate.Noise(read=2.0, shot_gain=2.0)
+        image, truth = ac.simulate.points(
+            SENSOR, peak=2000.0, background=0.0, noise=noise, rng=rng
+        )  # fmt: skip
+        found = ac.measure_points(image)
+        gains.append(found.noise_gain)
+        for name in ("across", "along"):
+            seen = getattr(found, name).mtf_nyquist
+            off.append((seen.value - truth.response(name).mtf_nyquist.value) / seen.std)
+    assert 1.5 < np.mean(gains) < 2.5
+    assert np.all(np.abs(off) < 3)

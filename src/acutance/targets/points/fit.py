@@ -125,10 +125,9 @@ class _State:
     light: Floats
     residual: Floats
 
-    @property
-    def rms(self) -> float:
-        """Root mean square of the residuals."""
-        return float(np.sqrt(np.mean(self.residual**2)))
+    def rms(self, weight: Floats) -> float:
+        """Root mean square of the residuals, of a pixel of weight 1."""
+        return math.sqrt(float(np.mean(weight * self.residual**2)))
 
 
 class _Settled(NamedTuple):
@@ -173,21 +172,23 @@ def _settle(
         blocks = problem.eliminated(weight)
         posterior = likelier_posterior(blocks.normal, prior, variance, inflation, earlier)
         before, state = state, _updated(stamps, state, background, blocks, posterior)
-        if state.rms > _WORSE * max(before.rms, floor) and floor < _MAX_FLOOR * brightest:
+        # By the weights of this pass: those of other noise have another minimum.
+        rms_before, rms = before.rms(weight), state.rms(weight)
+        if rms > _WORSE * max(rms_before, floor) and floor < _MAX_FLOOR * brightest:
             state, floor, earlier = before, 4 * floor, None
             continue
         earlier = posterior
         bend = _bend(peaks, blocks.own(posterior.beta)[:, 1:3], noise)
         found = noise
-        if bend <= state.rms:
+        if bend <= rms:
             growth = _growth(problem, blocks, noise, prior, posterior, before.light, state)
             found = noise_around(stamps, state.residual, state.light, growth, robust=robust)
-        negligible = max(min_floor, tuned.NEGLIGIBLE_BEND * state.rms)
-        if bend < negligible and floor < max(2 * min_floor, state.rms) and noise.agrees(found):
+        negligible = max(min_floor, tuned.NEGLIGIBLE_BEND * rms)
+        if bend < negligible and floor < max(2 * min_floor, rms) and noise.agrees(found):
             break
         # Where the PSF differs over the region, sources and PSF would go on chasing each other.
-        chasing = state.rms > _HARDLY_BETTER * before.rms
-        if chasing and passes > _MIN_PASSES and max(bend, floor) < before.rms:
+        chasing = rms > _HARDLY_BETTER * rms_before
+        if chasing and passes > _MIN_PASSES and max(bend, floor) < rms_before:
             break
         floor, noise = max(min_floor, bend), found
     return _Settled(before, problem, weight, blocks, prior, posterior, noise)

@@ -173,9 +173,12 @@ SIGNIFICANT_GROWTH: Final = 2.0
 """Pixels brighter than this share of the brightest, of whose noise the fit took up less than that,
 have to scatter so many standard deviations more than the others before growth is looked for: it
 saves the search where there is none, and at twice and half nothing changes."""
-BRIGHTEST_OVER_DARK: Final = (0.5, 1.5, 4.5, 13.5, 40.5, 121.5, 364.5)
+BRIGHTEST_OVER_DARK: Final = (
+    0.5, 1.5, 4.5, 13.5, 40.5, 121.5, 364.5, 1093.5, 3280.5, 9841.5,
+)  # fmt: skip
 """Variances of the brightest pixel's noise beyond that of a dark one, over the latter, tried; the
-grid shifted by a factor 2 gives 0.2 deviations with shot noise."""
+grid shifted by a factor 2 gives 0.2 deviations with shot noise. Of 16 stars with a variance 1000
+times that of a dark pixel the errors at Nyquist are 1.2 deviations; without the last three 1.9."""
 GROWTH_LOG_EVIDENCE: Final = 2.0
 """Gain of log evidence from which on noise is taken to grow with the light. At half 0.2
 deviations, at twice none."""
