@@ -7,7 +7,7 @@ import pytest
 
 import acutance as ac
 from acutance.numerics.gaussian_pixel_2d import GaussianPixel2d
-from acutance.targets.points import PointsOptions, tuned
+from acutance.targets.points import PointsOptions, fit, tuned
 from acutance.targets.points.psf_prior import PsfDirections
 
 SENSOR = ac.Sensor([ac.optics.Gaussian(0.45), ac.optics.Detector()])
@@ -182,3 +182,14 @@ def test_shot_noise_far_above_that_of_the_background_is_found():
             off.append((seen.value - truth.response(name).mtf_nyquist.value) / seen.std)
     assert 1.5 < np.mean(gains) < 2.5
     assert np.all(np.abs(off) < 3)
+
+
+def test_a_fit_that_does_not_settle_has_the_noise_it_was_posed_with(monkeypatch):
+    """Its weights and deviations are of that, not of what the last pass found: one pass, equal
+    weights."""
+    monkeypatch.setattr(fit, "_MAX_PASSES", 1)
+    noise = ac.simulate.Noise(read=2.0, shot_gain=0.4)
+    image, _ = ac.simulate.points(
+        SENSOR, peak=2000.0, background=0.0, noise=noise, rng=np.random.default_rng(1)
+    )
+    assert ac.measure_points(image).noise_gain == 0

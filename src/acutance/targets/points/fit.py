@@ -161,8 +161,9 @@ def _settle(
     brightest = float(peaks.max())
     min_floor = max(tuned.NOISE_FLOOR * brightest, stamps.least_noise)
     floor = max(min_floor, _first_bend(stamps, first, peaks))
-    noise, earlier = PointNoise.white(stamps.value.size), None
+    found, earlier = PointNoise.white(stamps.value.size), None
     for passes in range(_MAX_PASSES):
+        noise = found
         # Until the sources are in place, the linear problem leaves errors of second order: they
         # are taken for noise, lest the PSF explain them.
         prior = _prior(state.model.directions, background, floor)
@@ -179,7 +180,6 @@ def _settle(
             continue
         earlier = posterior
         bend = _bend(peaks, blocks.own(posterior.beta)[:, 1:3], noise)
-        found = noise
         if bend <= rms:
             growth = _growth(problem, blocks, noise, prior, posterior, before.light, state)
             found = noise_around(stamps, state.residual, state.light, growth, robust=robust)
@@ -190,7 +190,7 @@ def _settle(
         chasing = rms > _HARDLY_BETTER * rms_before
         if chasing and passes > _MIN_PASSES and max(bend, floor) < rms_before:
             break
-        floor, noise = max(min_floor, bend), found
+        floor = max(min_floor, bend)
     return _Settled(before, problem, weight, blocks, prior, posterior, noise)
 
 
