@@ -73,9 +73,10 @@ def noise_around(
         Bound the weight of outlying pixels.
     """
     floor = tuned.NOISE_FLOOR * float(light.max())
-    standard = residual / np.sqrt(1 + growth * np.maximum(light, 0.0))
+    per_dark = np.sqrt(1 + growth * np.maximum(light, 0.0))
+    standard = residual / per_dark
     scale = math.hypot(stamps.noise_of(standard), floor)
-    standard = standard / np.hypot(scale, tuned.MODEL_ERROR * light)
+    standard = standard / np.hypot(scale, tuned.MODEL_ERROR * light / per_dark)
     outlier = outlier_weights(standard) if robust else np.ones(standard.size)
     if float(np.sqrt(np.mean(residual**2))) < 3 * floor:
         return PointNoise(outlier, growth, _WHITE)
