@@ -13,7 +13,7 @@ def test_outliers_of_bright_pixels_are_those_of_their_own_noise() -> None:
     leave: both are in units of the noise there."""
     rng = np.random.default_rng(1)
     stamps = cut_stamps(np.zeros((21, 21)), np.array([[10.0, 10.0]]), 9.0)
-    light = 2000 * np.exp(-np.hypot(stamps.row - 10, stamps.col - 10) ** 2)
+    light = 2000 * np.exp(-(np.hypot(stamps.row - 10, stamps.col - 10) ** 2))
     std = np.sqrt(1 + 2 * light)
     residual = std * rng.standard_normal(std.size)
     brightest = int(np.argmax(light))

@@ -187,7 +187,7 @@ def _settle(
         if bend < negligible and floor < max(2 * min_floor, rms) and noise.agrees(found):
             break
         # Where the PSF differs over the region, sources and PSF would go on chasing each other.
-        chasing = rms > _HARDLY_BETTER * rms_before
+        chasing = rms > _HARDLY_BETTER * rms_before and noise.grows_as(found)
         if chasing and passes > _MIN_PASSES and max(bend, floor) < rms_before:
             break
         floor = max(min_floor, bend)

@@ -52,9 +52,13 @@ class PointNoise:
 
     def agrees(self, other: PointNoise) -> bool:
         """Whether a fit with the other noise would find about the same."""
-        same = math.isclose(self.growth, other.growth, rel_tol=0.2, abs_tol=1e-12)
         even = math.isclose(self.correlation.inflation, other.correlation.inflation, rel_tol=0.1)
-        return same and even and float(np.abs(self.outlier - other.outlier).mean()) < 0.004
+        outliers = float(np.abs(self.outlier - other.outlier).mean())
+        return self.grows_as(other) and even and outliers < 0.004
+
+    def grows_as(self, other: PointNoise) -> bool:
+        """Whether the other noise grows about as much with the light."""
+        return math.isclose(self.growth, other.growth, rel_tol=0.2, abs_tol=1e-12)
 
 
 def noise_around(
