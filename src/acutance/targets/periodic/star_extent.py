@@ -27,8 +27,8 @@ def extent_of(smooth: Floats, usable: Flags, star: SiemensStar, inner: float) ->
     radius, angle = star.polar(rows.astype(float), cols.astype(float))
     value = smooth[usable]
     wave = np.cos(star.cycles * angle + star.alpha_rad)
-    width = 2 * math.pi * _SECTOR_CYCLES / star.cycles
-    sectors = round(2 * math.pi / width)
+    sectors = round(star.cycles / _SECTOR_CYCLES)
+    width = 2 * math.pi / sectors
     sector = sector_of(angle, sectors)
     middle = radius < inner + 0.5 * (star.rim_px - inner)
     start = (radius > inner) & middle
