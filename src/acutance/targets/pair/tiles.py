@@ -43,6 +43,8 @@ _HOLE_PX: Final = 3.0
 """Distance within which a missing sample of the reference spoils a low pixel."""
 _SPOILED: Final = 0.02
 """Weight of missing values in an interpolated sample from which it is missing."""
+_NOISE_TILES: Final = 16
+_GOLDEN: Final = 0.5 * (math.sqrt(5) - 1)
 _KEPT_VALUES: Final = 40_000_000
 _MIN_SIDE_PX: Final = 16
 
@@ -119,23 +121,21 @@ class PairTiles:
     @cached_property
     def boxes(self) -> tuple[Box, ...]:
         """The low pixels of every tile that is read."""
-        box = self.box
-        parts = [-(-size // _TILE_PX) for size in box.shape]
-        edges = [
-            [first + _share(k, size, count) for k in range(count + 1)]
-            for first, size, count in zip((box.row, box.col), box.shape, parts, strict=True)
-        ]
-        every = tuple(
-            Box(top, left, bottom - top, right - left)
-            for top, bottom in pairwise(edges[0])
-            for left, right in pairwise(edges[1])
+        return self._boxes(max(1, self.max_pixels // _TILE_PX**2))
+
+    def _boxes(self, most: int) -> tuple[Box, ...]:
+        """The low pixels of all tiles, or of so many, distributed evenly over rows and columns."""
+        parts = [-(-size // _TILE_PX) for size in self.box.shape]
+        rows, cols = (
+            list(pairwise(first + _share(k, size, count) for k in range(count + 1)))
+            for first, size, count in zip(
+                (self.box.row, self.box.col), self.box.shape, parts, strict=True
+            )
         )
-        most = max(1, self.max_pixels // _TILE_PX**2)
-        if len(every) <= most:
-            return every
-        # A stride that divides neither count takes tiles from all rows and all columns.
-        chosen = np.unique((np.arange(most) + 0.5) * len(every) / most).astype(int)
-        return tuple(every[i] for i in chosen)
+        places = [(*rows[i], *cols[j]) for i, j in _evenly(*parts, most)]
+        return tuple(
+            Box(top, left, bottom - top, right - left) for top, bottom, left, right in places
+        )
 
     @property
     def share_read(self) -> float:
@@ -160,8 +160,7 @@ class PairTiles:
 
     def some(self, count: int) -> Iterator[PairTile]:
         """Some tiles, distributed evenly."""
-        step = max(1, len(self.boxes) // count)
-        yield from (self._read(box) for box in self.boxes[::step])
+        yield from (self._read(box) for box in self._boxes(min(count, len(self.boxes))))
 
     def high_noise(self, stated_std: float | None) -> HighNoise:
         """The noise in the samples the kernel acts on.
@@ -176,8 +175,8 @@ class PairTiles:
 
     def _estimated_noise(self) -> HighNoise:
         """The noise in a pixel of the high image: of the tile with the median one."""
-        step = max(1, len(self.boxes) // 16)
-        windows = [self._high_box(box) for box in self.boxes[::step]]
+        boxes = self._boxes(min(_NOISE_TILES, len(self.boxes)))
+        windows = [self._high_box(box) for box in boxes]
         found = [HighNoise.of_samples(read_data(self.high, window)[0]) for window in windows]
         found = sorted(one for one in found if one.power > 0) or [NO_NOISE]
         return found[len(found) // 2]
@@ -342,6 +341,22 @@ def _resampled(
 
 def _share(part: int, size: int, parts: int) -> int:
     return part * size // parts
+
+
+def _evenly(rows: int, cols: int, most: int) -> list[tuple[int, int]]:
+    """All places of a grid, or so many of them that leave out no part of it: (row, column).
+
+    Every row has its share of them, equally far apart; from row to row they move by the golden
+    ratio of that distance, which never comes back to the same columns.
+    """
+    wanted = min(most, rows * cols)
+    starts = [(2 * row * wanted + rows) // (2 * rows) for row in range(rows + 1)]
+    used = [(row, end - start) for row, (start, end) in enumerate(pairwise(starts)) if end > start]
+    return [
+        (row, int((k + (0.5 + turn * _GOLDEN) % 1) * cols / share))
+        for turn, (row, share) in enumerate(used)
+        for k in range(share)
+    ]
 
 
 def _window(axis: TapAxis, first_px: int, count_px: int, *, far: bool) -> tuple[int, int]:
