@@ -106,6 +106,13 @@ class TestChecks:
         assert {check.name for check in m.failed_checks} == set(PAIR_CHECKS)
         assert m.options["limits"] == absurd
 
+    def test_the_band_is_that_of_the_samples_the_kernel_acts_on(self) -> None:
+        """Of which a low pixel has four at most: the curves end at 2 c/px, whatever the ratio."""
+        low, high, _ = rendered(ratio=5.0, shape=(40, 40), shift=(0.0, 0.0))
+        m = ac.measure_biresolution(low, high, ratio=5)
+        message = next(check.message for check in m.checks if check.name == "ratio")
+        assert "5 times finer, and nothing is measured beyond 2 cycles per low pixel" in message
+
     def test_a_limit_that_no_pair_has(self) -> None:
         with pytest.raises(ac.OptionError, match="no check 'peak_snr' to limit"):
             BiresolutionOptions(limits={"peak_snr": 3.0})

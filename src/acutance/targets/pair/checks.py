@@ -129,10 +129,11 @@ def check_pair(
 
 
 def _ratio(grid: PairGrid, limits: Limits) -> Check:
-    ratio = min(grid.down.ratio, grid.across.ratio)
+    axes = grid.down, grid.across
+    ratio, band_cpp = min(one.ratio for one in axes), min(one.band_cpp for one in axes)
     found = (
         f"the high image's pixels are {ratio:.4g} times finer, and nothing is measured beyond "
-        f"{ratio / 2:.3g} cycles per low pixel"
+        f"{band_cpp:.3g} cycles per low pixel"
     )
     return answer("ratio", round(ratio, 6), found, limits)
 
