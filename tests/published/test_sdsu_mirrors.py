@@ -74,6 +74,15 @@ def test_the_ring_around_nine_pixels_determines_nothing():
     assert abs(sdsu_2003_mirrors(changed, np.rint(places), wide).psf.sigma_x_px - 0.7) > 0.03
 
 
+def test_the_background_lies_outside_of_the_widest_window():
+    """Which has nine pixels a side: what its outermost ring holds is no background."""
+    rows, cols = np.indices((21, 21))
+    away = np.maximum(np.abs(rows - 10), np.abs(cols - 10))
+    image = 100.0 + 900 * np.exp(-0.5 * (np.hypot(rows - 10, cols - 10) / 0.7) ** 2)
+    found = sdsu_2003_mirrors(image + 50.0 * (away == 4), np.array([[10, 10]]))
+    assert found.aligned.background_mean == pytest.approx(100.0, abs=1e-6)
+
+
 def test_places_alone_are_aligned_unless_each_source_is_scaled():
     """One mirror of four at half the light: it is half as high in the common fit, or as high."""
     places = np.array([[12.2, 12.3], [12.4, 30.1], [30.3, 12.1], [30.0, 30.4]])

@@ -264,7 +264,7 @@ def _surroundings(image: Floats, place: Floats) -> Floats:
     side = 2 * _AROUND_PX + 1
     rows, cols, values = _window(image, (float(place[0]), float(place[1])), side)
     away = np.maximum(np.abs(rows - round(place[0])), np.abs(cols - round(place[1])))
-    return np.asarray(values[away >= _AROUND_PX - 1])
+    return np.asarray(values[away >= _AROUND_PX])
 
 
 def _fit_mirror(
