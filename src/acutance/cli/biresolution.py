@@ -74,7 +74,7 @@ def biresolution(
         ),
     ] = 1e-4,
     max_shift: Annotated[
-        int, typer.Option(metavar="PX", help="Largest error of registration looked for.")
+        int, typer.Option(metavar="PX", help="Largest error of registration looked for, up to 48.")
     ] = 8,
     high_noise: Annotated[
         float | None,

@@ -17,6 +17,7 @@ from acutance.targets.pair import pair
 from acutance.targets.pair.gaussian_fit import GaussianFit
 from acutance.targets.pair.grid import pair_grid
 from acutance.targets.pair.noise import HighNoise
+from acutance.targets.pair.register import register
 
 
 class TestTruth:
@@ -105,6 +106,23 @@ class TestTruth:
         options = ac.BiresolutionOptions(max_shift_px=16)
         m = ac.measure_biresolution(low, high, options=options)
         assert [one.value for one in m.shift_px] == pytest.approx((9.5, 3.0), abs=0.03)
+
+    def test_the_largest_shift_that_can_be_asked_for_is_looked_at(self) -> None:
+        """Half a tile of 96 px; more was accepted, and nothing done with it."""
+        options = ac.BiresolutionOptions(max_shift_px=48)
+        with pytest.raises(ac.OptionError, match="0 to 48"):
+            ac.BiresolutionOptions(max_shift_px=49)
+        image = np.random.default_rng(1).standard_normal((98, 100))
+        assert register(image, image, options.max_shift_px).reach_px == 48
+
+    def test_images_further_apart_than_was_looked_at(self) -> None:
+        low, high, _ = rendered("gaussian", 2.0, 3, (96, 96), (0.0, 0.0))
+        low, high = low[:, :70], high[:, 52:]
+        with pytest.raises(ac.TargetError, match="than the 8 low pixels looked at, look further"):
+            ac.measure_biresolution(low, high, ratio=2)
+        options = ac.BiresolutionOptions(max_shift_px=48)
+        with pytest.raises(ac.TargetError, match=r"looked at, choose a larger region"):
+            ac.measure_biresolution(low[:, :30], high[:, -60:], ratio=2, options=options)
 
     def test_spectral_ratio_agrees(self) -> None:
         m = measured(method="spectral-ratio")

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Final
 
 from acutance.arguments import require_types
 from acutance.errors import OptionError
 from acutance.targets.check import Limits, require_limits
 from acutance.targets.pair.checks import PAIR_CHECKS
 
-__all__ = ["BiresolutionOptions"]
+__all__ = ["MAX_SHIFT_PX", "BiresolutionOptions"]
+
+MAX_SHIFT_PX: Final = 48
+"""Half of the largest tile: beyond it, two tiles of the same place share too little."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +29,8 @@ class BiresolutionOptions:
     max_steps : int
         Iterations of the parametric fit at most.
     max_shift_px : int
-        The largest error of registration that is looked for, in low pixels.
+        The largest error of registration that is looked for, in low pixels: 48 at most, and half of
+        the tiles of up to 96 pixels that a region is cut into.
     reach_px : float or None
         How far the free kernel goes, in low pixels; None leaves it to the size of the region.
     max_pixels : int
@@ -62,7 +66,12 @@ class BiresolutionOptions:
         asked = (
             ("stop_change", self.stop_change, 0 < self.stop_change < 1, "between 0 and 1"),
             ("max_steps", self.max_steps, self.max_steps >= 1, "at least 1"),
-            ("max_shift_px", self.max_shift_px, 0 <= self.max_shift_px <= 64, "0 to 64"),
+            (
+                "max_shift_px",
+                self.max_shift_px,
+                0 <= self.max_shift_px <= MAX_SHIFT_PX,
+                f"0 to {MAX_SHIFT_PX}",
+            ),
             ("reach_px", reach, 2 <= reach <= 12, "2 to 12"),
             ("max_pixels", self.max_pixels, self.max_pixels >= 4096, "at least 4096"),
             ("noise_high", noise, 0 <= noise < math.inf, "at least 0"),

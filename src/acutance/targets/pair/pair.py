@@ -37,7 +37,7 @@ from acutance.targets.pair.pair_measurement import (
 )
 from acutance.targets.pair.reference import ReferenceLike, reference_otf
 from acutance.targets.pair.reference_otf import ReferenceOtf
-from acutance.targets.pair.register import Registration, registered_tiles
+from acutance.targets.pair.register import Registration, look_further, registered_tiles
 from acutance.targets.pair.residual_slopes import noise_products, residual_slopes
 from acutance.targets.pair.screen import ScreenedTiles, screened
 from acutance.targets.pair.spectral_ratio import PairSpectra, fit_spectra, pair_spectra
@@ -188,13 +188,14 @@ def _gaussian(
             f"the low image follows the high one with gain {found.gain:.3g} and correlation "
             f"{found.correlation:.3f}"
             + (", brighter where that is darker" if found.gain < 0 else "")
-            + ": bands, dates or places differ too much for a measurement; choose a similar band"
+            + ": bands, dates or places differ too much for a measurement; choose a similar band; "
+            + look_further(match, options)
         )
-    _require_within_taps(found, tiles.taps)
+    _require_within_taps(found, tiles.taps, look_further(match, options))
     return ground, found
 
 
-def _require_within_taps(found: GaussianFit, taps: TapGrid) -> None:
+def _require_within_taps(found: GaussianFit, taps: TapGrid, advice: str) -> None:
     """Refuse a fit that moved the kernel off the samples it acts on."""
     for axis, name in ((found.down, "rows"), (found.across, "columns")):
         places = (taps.down if name == "rows" else taps.across).places_px
@@ -203,7 +204,7 @@ def _require_within_taps(found: GaussianFit, taps: TapGrid) -> None:
                 f"the parametric fit moved the low image by {axis.shift_px:.1f} pixels along its "
                 f"{name}, off the high image's samples, which were taken {places[0]:.1f} to "
                 f"{places[-1]:.1f} pixels from its own: the two have too little in common to be "
-                "registered; choose a region with more structure"
+                f"registered; choose a region with more structure; {advice}"
             )
 
 

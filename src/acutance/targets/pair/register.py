@@ -19,11 +19,11 @@ from acutance.numerics.noise import robust_scale
 from acutance.raster import Image, Region
 from acutance.targets.pair import tuned
 from acutance.targets.pair.grid import PairGrid
-from acutance.targets.pair.options import BiresolutionOptions
+from acutance.targets.pair.options import MAX_SHIFT_PX, BiresolutionOptions
 from acutance.targets.pair.tile import FAR_PX, first_of_cell
 from acutance.targets.pair.tiles import PairTiles
 
-__all__ = ["Registration", "register", "registered_tiles"]
+__all__ = ["Registration", "look_further", "register", "registered_tiles"]
 
 _LOCAL_PX = 9
 _BOUND_SIGMAS = 3.0
@@ -44,13 +44,16 @@ class Registration:
         Of the images without their local means, at that shift.
     inverted : bool
         Whether a match with opposite sign is the stronger one.
+    reach_px : int
+        The largest shift that was looked at, along rows and along columns.
     at_limit : bool
-        Whether it lies at the end of the range that was looked at, so that the best may be beyond.
+        Whether it lies at the end of that range, so that the best may be beyond.
     """
 
     shift_px: tuple[float, float]
     correlation: float
     inverted: bool
+    reach_px: int = 0
     at_limit: bool = False
 
 
@@ -62,7 +65,7 @@ def register(low: Floats, high: Floats, max_shift_px: int) -> Registration:
     low, high : (h, w) arrays
         NaN where unusable. `high` is the reference averaged over low pixels.
     max_shift_px : int
-        The largest shift that is looked for.
+        The largest shift that is looked for; half of a small image is the most.
     """
     a, b = _detail(low), _detail(high)
     power = math.sqrt(float(np.sum(a * a)) * float(np.sum(b * b)))
@@ -77,7 +80,7 @@ def register(low: Floats, high: Floats, max_shift_px: int) -> Registration:
     i, j = (int(k) for k in np.unravel_index(int(np.argmax(near)), near.shape))
     shift = tuple(float(order[k]) + _vertex(line, k) for k, line in ((i, near[:, j]), (j, near[i])))
     return Registration(
-        (shift[0], shift[1]), float(near[i, j]), bool(-near.min() > near.max()),
+        (shift[0], shift[1]), float(near[i, j]), bool(-near.min() > near.max()), reach,
         reach > 0 and max(abs(int(order[i])), abs(int(order[j]))) == reach,
     )  # fmt: skip
 
@@ -123,15 +126,25 @@ def registered_tiles(
     if found.at_limit:
         raise TargetError(
             f"the images match best with a shift of {found.shift_px[0]:.1f} rows and "
-            f"{found.shift_px[1]:.1f} columns, at the end of the {options.max_shift_px} low pixels "
-            "looked at: they may lie further apart, look further (max_shift_px, --max-shift); or "
-            "they show different ground"
+            f"{found.shift_px[1]:.1f} columns, at the end of the {found.reach_px} low pixels "
+            f"looked at: {look_further(found, options)}; or they show different ground"
         )
     placed = grid.shifted((round(found.shift_px[0]), round(found.shift_px[1])))
     reach_px = options.reach_px
     if reach_px is None:
         reach_px = _reach_with_room(placed, first, region)
     return replace(first, grid=placed, reach_px=reach_px), found
+
+
+def look_further(match: Registration, options: BiresolutionOptions) -> str:
+    """What to do where images may lie further apart than was looked at."""
+    if match.reach_px < options.max_shift_px:
+        choice = "choose a larger region (half of a tile is looked at, of up to 96 pixels)"
+    elif match.reach_px < MAX_SHIFT_PX:
+        choice = f"look further (max_shift_px, --max-shift, up to {MAX_SHIFT_PX})"
+    else:
+        choice = "correct their geotransforms, or cut both to the same ground"
+    return f"if they lie further apart than the {match.reach_px} low pixels looked at, {choice}"
 
 
 def _reach_with_room(grid: PairGrid, tiles: PairTiles, region: Region | None) -> float:
