@@ -12,6 +12,7 @@ import acutance as ac
 from acutance.curves.grid import Floats
 from acutance.simulate import Noise
 from acutance.targets.pair import BIRESOLUTION_METHODS
+from acutance.targets.pair.noise import HighNoise
 
 
 @cache
@@ -77,3 +78,11 @@ def test_noise_that_is_known_well_enough_is_not_named() -> None:
 def test_more_noise_than_there_is_is_named_in_the_refusal() -> None:
     with pytest.raises(ac.TargetError, match=r"noise of 240 was stated .* estimated as [78]\d"):
         measured(2.0, 240.0)
+
+
+def test_white_noise_is_no_texture() -> None:
+    """Half of what is taken for texture is taken off the noise, and makes it uncertain."""
+    rng = np.random.default_rng(2)
+    found = HighNoise.of_samples(1000 + 10 * rng.standard_normal((600, 600)))
+    assert found.power > 85.5
+    assert found.power_std < 0.31 * found.power
