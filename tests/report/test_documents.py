@@ -8,7 +8,14 @@ import pytest
 from jsonschema import Draft202012Validator, ValidationError
 
 from acutance.report import document as document_of
-from acutance.report import json_text, measurement_schema, page, text, truth_document
+from acutance.report import (
+    json_text,
+    measurement_schema,
+    page,
+    sensor_document,
+    text,
+    truth_document,
+)
 
 
 @pytest.fixture(scope="module")
@@ -103,6 +110,17 @@ def test_a_truth_names_its_sensor_and_has_no_standard_deviation():
     assert document["mtf_nyquist"] == pytest.approx(0.2891, abs=1e-3)
     assert document["sensor"]["blocks"][0]["block"] == "Gaussian"
     assert set(document["mtf"]) == {"freq_cpp", "value", "phase_rad"}
+
+
+def test_documents_of_truths_and_studies_name_both_distances_of_a_sensor():
+    from acutance import optics, simulate
+    from acutance.studies.result import options_dict
+
+    sensor = optics.Sensor([optics.Detector()], gsd_m=0.5, gsd_along_m=0.7)
+    _, truth = simulate.edge(sensor)
+    for own in (truth_document(truth, sensor)["sensor"], options_dict(sensor)):
+        assert (own["gsd_m"], own["gsd_along_m"]) == (0.5, 0.7)
+    assert truth_document(truth, sensor)["sensor"] == sensor_document(sensor)
 
 
 def test_the_truth_of_a_pulse_has_its_width_and_three_levels():

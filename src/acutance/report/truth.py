@@ -41,10 +41,7 @@ def truth_document(truth: Truth | PulseTruth, sensor: Sensor) -> dict[str, Any]:
     return {
         "schema": "acutance/truth/1",
         "orientation": truth.orientation,
-        "sensor": {
-            "gsd_m": sensor.gsd_m,
-            "blocks": [{"block": type(one).__name__, **_fields(one)} for one in sensor.blocks],
-        },
+        "sensor": sensor_document(sensor),
         "line": truth.line.to_dict(),
         "angle_deg": truth.line.angle_deg,
         **_levels(truth),

@@ -103,6 +103,7 @@ def options_dict(options: Any) -> Any:
     if isinstance(options, Sensor):
         return {
             "gsd_m": options.gsd_m,
+            "gsd_along_m": options.gsd_along_m,
             "blocks": [describe_block(block) for block in options.blocks],
         }
     if is_dataclass(options):
