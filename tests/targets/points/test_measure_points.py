@@ -232,6 +232,9 @@ def test_numbers_with_less_noise_than_their_step_refuse_no_mirror(seed, level):
     found = ac.measure_points(np.rint(level + 100.0 * light / light.max()))
     assert len(found.sources) == 20
     assert not found.verdict.warns
+    # Half a step, and rounding; by their median it was less, and the rest grew with the light.
+    assert found.noise_std == pytest.approx(np.hypot(0.5, 12**-0.5), rel=0.1)
+    assert found.noise_gain == 0
     for direction in (found.across, found.along):
         error = direction.mtf_nyquist.value - sensor.mtf()(0.5).value
         assert abs(error) < 3 * direction.mtf_nyquist.std < 0.05

@@ -132,7 +132,7 @@ class PairTiles:
                 (self.box.row, self.box.col), self.box.shape, parts, strict=True
             )
         )
-        places = [(*rows[i], *cols[j]) for i, j in _evenly(*parts, most)]
+        places = [(*rows[i], *cols[j]) for i, j in _evenly(len(rows), len(cols), most)]
         return tuple(
             Box(top, left, bottom - top, right - left) for top, bottom, left, right in places
         )

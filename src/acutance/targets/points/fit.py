@@ -17,7 +17,6 @@ import numpy as np
 
 from acutance.curves.grid import Floats
 from acutance.numerics.marginal_likelihood import Posterior, Prior
-from acutance.numerics.noise import robust_scale
 from acutance.targets.points import tuned
 from acutance.targets.points.among_sensors import AmongSensors, Equations, among_sensors
 from acutance.targets.points.amplitudes import (
@@ -181,7 +180,7 @@ def _settle(
         earlier = posterior
         bend = _bend(peaks, blocks.own(posterior.beta)[:, 1:3], noise)
         if bend <= rms:
-            growth = _growth(problem, blocks, noise, prior, posterior, before.light, state)
+            growth = _growth(stamps, problem, blocks, noise, prior, posterior, before.light, state)
             found = noise_around(stamps, state.residual, state.light, growth, robust=robust)
         negligible = max(min_floor, tuned.NEGLIGIBLE_BEND * rms)
         if bend < negligible and floor < max(2 * min_floor, rms) and noise.agrees(found):
@@ -284,6 +283,7 @@ def _state_of(
 
 
 def _growth(
+    stamps: Stamps,
     problem: SourceProblem,
     blocks: Blocks,
     noise: PointNoise,
@@ -298,13 +298,13 @@ def _growth(
     """
     if noise.growth == 0:
         leverage = _leverage(blocks, posterior, state.light)
-        if not noise_grows(state.residual, state.light, leverage, prior.noise_floor):
+        if not noise_grows(stamps, state.residual, state.light, leverage, prior.noise_floor):
             return 0.0
     dark = state.light < _DARK * float(state.light.max())
     if not dark.any():
         # Sources so close that no pixel shows the background alone.
         return noise.growth
-    variance = max(robust_scale(state.residual[dark]), prior.noise_floor) ** 2
+    variance = max(stamps.noise_of(state.residual[dark]), prior.noise_floor) ** 2
     inflated = variance * noise.correlation.inflation
     axes = determined_directions(blocks.normal, prior, posterior.log_amplitude, inflated)
     determined = replace(problem, shared=problem.shared @ axes)

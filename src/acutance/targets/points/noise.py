@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from acutance.curves.grid import Floats
-from acutance.numerics.noise import Correlation, correlation, outlier_weights, robust_scale
+from acutance.numerics.noise import Correlation, correlation, outlier_weights
 from acutance.targets.points import tuned
 from acutance.targets.points.stamps import Stamps
 
@@ -90,11 +90,14 @@ def noise_around(
     return PointNoise(outlier, growth, correlation(bounded, rows, cols))
 
 
-def noise_grows(residual: Floats, light: Floats, leverage: Floats, least: float) -> bool:
+def noise_grows(
+    stamps: Stamps, residual: Floats, light: Floats, leverage: Floats, least: float
+) -> bool:
     """Whether bright pixels scatter significantly more than the background.
 
     Parameters
     ----------
+    stamps : Stamps
     residual, light : (n,) arrays
         What a fit with equal weights leaves of every pixel, and what the sources give it.
     leverage : (n,) array
@@ -106,7 +109,7 @@ def noise_grows(residual: Floats, light: Floats, leverage: Floats, least: float)
     dark, bright = ~bright, bright & (leverage < tuned.MAX_LEVERAGE)
     if bright.sum() < _MIN_PIXELS or dark.sum() < _MIN_PIXELS:
         return False
-    base = math.hypot(robust_scale(residual[dark]), least)
+    base = math.hypot(stamps.noise_of(residual[dark]), least)
     free = 1 - leverage[bright]
     power = np.maximum(residual[bright] ** 2 - (tuned.SHAPE_ERROR * light[bright]) ** 2, 0.0)
     excess = float(power.sum()) / base**2 - float(free.sum())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -50,8 +51,16 @@ class Stamps:
         return rounding_std(self.value)
 
     def noise_of(self, residual: Floats) -> float:
-        """Standard deviation of the bulk of residuals, (n,): that of rounding at least."""
-        return max(robust_scale(residual), self.least_noise)
+        """Standard deviation of the bulk of residuals, (n,): that of rounding at least.
+
+        Their median is no measure where it is less than the step of the image's numbers: then it is
+        the root mean square of those within three steps.
+        """
+        scale, step = robust_scale(residual), math.sqrt(12) * self.least_noise
+        if scale < step:
+            bulk = residual[np.abs(residual) < 3 * step]
+            scale = math.sqrt(float(np.mean(bulk**2))) if bulk.size else step
+        return max(scale, self.least_noise)
 
     @cached_property
     def starts(self) -> _Indices:
