@@ -125,7 +125,8 @@ def _draw_waves(options: LandscapeOptions, rng: np.random.Generator) -> Waves:
 def _place_objects(
     shape: tuple[int, int], options: LandscapeOptions, rng: np.random.Generator
 ) -> list[tuple[Parcel, ...]]:
-    """Objects at random places, none nearer to another than asked for, all whole in the image."""
+    """Objects at random places, all whole in the image, none nearer to another than asked for, but
+    for the cell by which one may move within its place."""
     count = max(1, round(options.density_per_mpx * shape[0] * shape[1] / 1e6))
     drawn = [draw_object(options, rng) for _ in range(count)]
     masks = [_mask(one, 0.5 * options.clear_px) for one in drawn]
