@@ -59,7 +59,7 @@ def test_an_archive_says_what_its_images_are_like(acutance, place):
         (["--metric", "rer"], "need the archive: add --archive"),
         (["--images", "many"], "--images many: write numbers with commas"),
         (["--scatter", "much"], "--scatter much: write a share of the level"),
-        (["--years", "0.1"], "a pace of 12 a year over 0.1 years gives 1 images"),
+        (["--years", "0.1"], "a pace of 12 a year over 0.1 years gives 1 image: a trend"),
         (["--draws", "5"], "draws is 5: give 10 or more"),
         (["--archive", "none.db"], "none.db"),
     ],

@@ -82,7 +82,7 @@ def test_where_no_pixel_is_dark_the_growth_of_the_noise_stays_what_it_was():
     state = SimpleNamespace(light=np.linspace(50.0, 100.0, 30), residual=np.ones(30))
     noise = PointNoise.white(30)
     grown = replace(noise, growth=0.3)
-    assert _growth(None, None, grown, None, None, state.light, state) == 0.3
+    assert _growth(None, None, None, grown, None, None, state.light, state) == 0.3
 
 
 def test_a_star_whose_tables_would_fill_the_memory_is_refused():
