@@ -224,7 +224,9 @@ def apply(
         raise OptionError("--roi names edges for --verify: add it")
     if method != KINDS["edge"].methods[0] and not verify:
         raise OptionError("--method measures edges for --verify: add it")
-    ending = ".npy" if image.lower().endswith(".npy") else ".tif"
+    from acutance.raster.pixels import is_npy
+
+    ending = ".npy" if is_npy(image) else ".tif"
     place = check_output("--out", out, (ending, ".tiff") if ending == ".tif" else (ending,),
                          keep=(image, filter, roi))  # fmt: skip
 

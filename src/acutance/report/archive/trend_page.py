@@ -213,7 +213,7 @@ def _images_table(trend: Trend) -> Table:
     """Every image with its mean and how far it is from the trend, in its own deviations."""
     images = trend.images
     expected = trend.bands(images.when).mean
-    scale = np.hypot(np.sqrt(images.variance), trend.posterior.drifting().typical_scatter)
+    scale = np.sqrt(images.variance + trend.posterior.drifting().typical_scatter ** 2)
     bad = are_bad(trend)
     rows: list[tuple[str, ...]] = []
     alerts = set()

@@ -100,8 +100,6 @@ class _Difference:
     Attributes
     ----------
     plane : Plane
-    along : (2, n) array
-        Unit vectors of the shifts.
     odd, even : (3, n, m) and (2, n, m) array
         What D is made of: x and y, spherical aberration; coma along the shift and across it.
     angle : (n, m) array
@@ -111,7 +109,6 @@ class _Difference:
     """
 
     plane: Plane
-    along: Floats
     odd: Floats
     even: Floats
     angle: Floats
@@ -126,12 +123,11 @@ class _Difference:
         _, obscuration = aperture(p[0], p[1])
         coma_along = 6 * math.sqrt(8) * s * (3 * xx + yy + ss - 1 - obscuration**2)
         even = np.stack([coma_along, 12 * math.sqrt(8) * s * x * y])
-        along, _ = _directions(plane)
         by_x, by_y = _tilts(p, plane)
         angle = 2 * math.pi * np.einsum("kn,knm->nm", [by_x, by_y, np.full_like(by_x, p[7])], odd)
-        coma = np.einsum("kn,knm->nm", [p[5:7] @ along, p[5:7] @ _across(along)], even)
+        coma = np.einsum("kn,knm->nm", [p[5:7] @ plane.along, p[5:7] @ _across(plane.along)], even)
         waves = weights * np.exp(2j * math.pi * coma)
-        return cls(plane, along, odd, even, angle, waves)
+        return cls(plane, odd, even, angle, waves)
 
     @property
     def mean(self) -> Complexes:
@@ -144,7 +140,8 @@ class _Difference:
         sines, cosines = -self.waves * np.sin(self.angle), 1j * self.waves * np.cos(self.angle)
         by_x, by_y, spherical = np.einsum("nm,knm->kn", sines, self.odd)
         coma_along, coma_across = np.einsum("nm,knm->kn", cosines, self.even)
-        coma = self.along * coma_along + _across(self.along) * coma_across
+        along = self.plane.along
+        coma = along * coma_along + _across(along) * coma_across
         by_waves = _by_waves(by_x, by_y, self.plane)
         return np.asarray(2 * math.pi * np.vstack([by_waves, coma, spherical]), complex)
 
@@ -158,23 +155,14 @@ def _common_part(p: Floats, plane: Plane) -> tuple[Floats, Floats, Floats, Float
 
 def _tilts(p: Floats, plane: Plane) -> tuple[Floats, Floats]:
     """What defocus and astigmatism give D of s x and of s y, (n,) each."""
-    _, twice = _directions(plane)
-    by_x = _DEFOCUS * p[2] + _ASTIGMATISM * (p[3:5] @ twice)
-    return np.asarray(by_x), np.asarray(_ASTIGMATISM * (p[3:5] @ _across(twice)))
+    by_x = _DEFOCUS * p[2] + _ASTIGMATISM * (p[3:5] @ plane.twice)
+    return np.asarray(by_x), np.asarray(_ASTIGMATISM * (p[3:5] @ _across(plane.twice)))
 
 
 def _by_waves(by_x: NDArray[Any], by_y: NDArray[Any], plane: Plane) -> NDArray[Any]:
     """Derivatives by defocus and both astigmatisms, (3, n), of those by the two tilts, (n,)."""
-    _, twice = _directions(plane)
-    astigmatism = _ASTIGMATISM * (twice * by_x + _across(twice) * by_y)
+    astigmatism = _ASTIGMATISM * (plane.twice * by_x + _across(plane.twice) * by_y)
     return np.vstack([_DEFOCUS * by_x, astigmatism])
-
-
-def _directions(plane: Plane) -> tuple[Floats, Floats]:
-    """Unit vectors of the places, and of twice their angle, (2, n) each."""
-    length = np.maximum(np.hypot(plane.u_cpp, plane.v_cpp), 1e-12)
-    along = np.stack([plane.u_cpp, plane.v_cpp]) / length
-    return along, np.stack([along[0] ** 2 - along[1] ** 2, 2 * along[0] * along[1]])
 
 
 def _across(along: Floats) -> Floats:

@@ -23,7 +23,6 @@ from acutance.targets.combine.curves import WhitenedCurves
 from acutance.targets.combine.form_products import FormProducts
 from acutance.targets.combine.lit_curves import LitCurves
 from acutance.targets.combine.sensor_forms import SensorForm
-from acutance.targets.combine.sensor_terms import TERMS
 from acutance.targets.combine.weighted_forms import WeightedForm
 
 __all__ = ["FIRST_STEPS", "FormFit", "Start", "fit_forms", "likely_starts"]
@@ -274,11 +273,10 @@ def likely_starts(data: WhitenedCurves, forms: Sequence[SensorForm]) -> list[lis
 def _starts(form: SensorForm) -> list[Floats]:
     """First guesses of the parameters of a form."""
     found = [form.mean]
-    for name, (first, ways) in _STARTS.items():
-        if name in form.terms:
-            before = form.terms[: form.terms.index(name)]
-            at = first + sum(len(TERMS[one].mean) for one in before)
-            found = [_with(start, at, way) for start in found for way in ways]
+    for name, begin in form.begins.items():
+        if name in _STARTS:
+            first, ways = _STARTS[name]
+            found = [_with(start, begin + first, way) for start in found for way in ways]
     return found
 
 

@@ -61,6 +61,18 @@ class Plane:
         return np.asarray(2 * math.pi * np.hypot(self.u_cpp, self.v_cpp))
 
     @cached_property
+    def along(self) -> Floats:
+        """Unit vectors towards the places, (2, n); none at zero frequency."""
+        places = np.stack([self.u_cpp, self.v_cpp])
+        return np.asarray(places / np.maximum(np.hypot(*places), 1e-12))
+
+    @cached_property
+    def twice(self) -> Floats:
+        """Unit vectors of twice their angle, (2, n)."""
+        across, along = self.along
+        return np.stack([across**2 - along**2, 2 * across * along])
+
+    @cached_property
     def tap_gains(self) -> tuple[Floats, Floats]:
         """What a unit of every outer tap adds to the gain across and along, (n, taps) each."""
         return _tap_gains(self.u_cpp), _tap_gains(self.v_cpp)

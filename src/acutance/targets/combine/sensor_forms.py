@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cache
+from itertools import accumulate
 
 import numpy as np
 from numpy.typing import NDArray
@@ -103,14 +104,19 @@ class SensorForm:
         return min(widths, default=0.0)
 
     @property
+    def begins(self) -> dict[str, int]:
+        """Place of the first parameter of every term."""
+        sizes = [len(TERMS[name].mean) for name in self.terms]
+        return dict(zip(self.terms, accumulate(sizes, initial=0), strict=False))
+
+    @property
     def signed(self) -> tuple[NDArray[np.intp], ...]:
         """Of terms that have such the places of parameters whose signs may all be changed."""
-        found, start = [], 0
-        for name in self.terms:
-            if TERMS[name].signed:
-                found.append(start + np.array(TERMS[name].signed, np.intp))
-            start += len(TERMS[name].mean)
-        return tuple(found)
+        return tuple(
+            begin + np.array(TERMS[name].signed, np.intp)
+            for name, begin in self.begins.items()
+            if TERMS[name].signed
+        )
 
     @property
     def oblique_terms(self) -> tuple[str, ...]:

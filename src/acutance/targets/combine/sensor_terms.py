@@ -247,4 +247,5 @@ TERMS: dict[str, Term] = {
 }
 """Terms by name. Priors: sigma .2 to .8 px, correlation .3, smear of a pixel or two, halos as of
 `acutance.optics.FAMILIES` and somewhat more (2 to 25 % of the light, 1.5 to 6 px, falling like a
-Gaussian or like an exponential), a quarter of a wave of defocus."""
+Gaussian or like an exponential), next to the core of any share and of .3 to 1.1 px, a quarter of a
+wave of defocus."""
