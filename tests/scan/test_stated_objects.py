@@ -72,7 +72,8 @@ def test_nothing_stated_changes_nothing():
 @pytest.fixture(scope="module")
 def image():
     options = all_of_softness(SOFTNESS_PX)
-    rng = np.random.default_rng(5)
+    # Of this one no part is softer than others: its budget has no term for that.
+    rng = np.random.default_rng(10)
     return simulate.landscape(SENSOR, shape=(600, 600), snr=100, options=options, rng=rng)[0]
 
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import cKDTree
 
 from acutance.arguments import require_floats, require_types
 from acutance.curves.direction import unit_vector
@@ -125,23 +127,53 @@ def _draw_waves(options: LandscapeOptions, rng: np.random.Generator) -> Waves:
 def _place_objects(
     shape: tuple[int, int], options: LandscapeOptions, rng: np.random.Generator
 ) -> list[tuple[Parcel, ...]]:
-    """Objects at random places, all whole in the image, none nearer to another than asked for, but
-    for the cell by which one may move within its place."""
+    """Objects at random places, none nearer to another than asked for, all whole in the image."""
     count = max(1, round(options.density_per_mpx * shape[0] * shape[1] / 1e6))
     drawn = [draw_object(options, rng) for _ in range(count)]
     masks = [_mask(one, 0.5 * options.clear_px) for one in drawn]
     taken = np.zeros([size // _CELL_PX for size in shape], bool)
-    placed = []
+    placed: list[tuple[Parcel, ...]] = []
+    outlines: list[Floats] = []
+    extents = np.empty((count, 2, 2))
     # The large ones first: the small ones still find room between them.
     for i in sorted(range(count), key=lambda i: -masks[i][0].size):
         mask, first_row, first_col = masks[i]
-        spot = _free_place(taken, mask, rng)
-        if spot is None:
-            continue
-        taken[spot[0] : spot[0] + mask.shape[0], spot[1] : spot[1] + mask.shape[1]] |= mask
-        down, right = (_CELL_PX * (at + rng.uniform(0.0, 1.0)) for at in spot)
-        placed.append(tuple(one.moved(down - first_row, right - first_col) for one in drawn[i]))
+        for spot in _free_places(taken, mask, rng):
+            down, right = (_CELL_PX * (at + rng.uniform(0.0, 1.0)) for at in spot)
+            there = tuple(one.moved(down - first_row, right - first_col) for one in drawn[i])
+            outline = _outline(there)
+            # Within their cells two objects may have come nearer to one another.
+            if not _are_clear(outline, outlines, extents[: len(placed)], options.clear_px):
+                continue
+            taken[spot[0] : spot[0] + mask.shape[0], spot[1] : spot[1] + mask.shape[1]] |= mask
+            extents[len(placed)] = outline.min(axis=0), outline.max(axis=0)
+            outlines.append(outline)
+            placed.append(there)
+            break
     return placed
+
+
+def _outline(parcels: tuple[Parcel, ...]) -> Floats:
+    """Points on the borders of an object, and on the outer ones of strips outside of them."""
+    outer = [
+        one.borders[strip.border].points(strip.near_px)
+        for one in parcels
+        for strip in one.strips
+        if strip.near_px < 0
+    ]
+    return np.concatenate([*(one.outline() for one in parcels), *outer])
+
+
+def _are_clear(outline: Floats, others: Sequence[Floats], extents: Floats, clear_px: float) -> bool:
+    """Whether so much ground lies between an object and the others, whose extents are known."""
+    low, high = outline.min(axis=0) - clear_px, outline.max(axis=0) + clear_px
+    near = np.flatnonzero(np.all((extents[:, 0] < high) & (extents[:, 1] > low), axis=1))
+    if near.size == 0:
+        return True
+    own = cKDTree(outline)
+    apart = (own.query(others[k], distance_upper_bound=clear_px)[0] for k in near.tolist())
+    # Beyond the bound no distance is told.
+    return not any(np.isfinite(one).any() for one in apart)
 
 
 def _mask(parcels: tuple[Parcel, ...], room_px: float) -> tuple[Mask, float, float]:
@@ -156,12 +188,12 @@ def _mask(parcels: tuple[Parcel, ...], room_px: float) -> tuple[Mask, float, flo
     return taken, float(low[0]), float(low[1])
 
 
-def _free_place(taken: Mask, mask: Mask, rng: np.random.Generator) -> tuple[int, int] | None:
+def _free_places(taken: Mask, mask: Mask, rng: np.random.Generator) -> Iterator[tuple[int, int]]:
+    """Places at random whose cells are free, of so many that are tried."""
     room = [whole - part - 1 for whole, part in zip(taken.shape, mask.shape, strict=True)]
     if min(room) < 0:
-        return None
+        return
     for _ in range(_ATTEMPTS):
         row, col = (int(rng.integers(0, size + 1)) for size in room)
         if not np.any(taken[row : row + mask.shape[0], col : col + mask.shape[1]] & mask):
-            return row, col
-    return None
+            yield row, col

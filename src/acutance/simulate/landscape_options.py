@@ -47,7 +47,7 @@ class LandscapeOptions:
         Objects wanted in a million pixels; what finds no room is left out. An object is a field,
         a roof, a road or a disc, with all that lies beside it.
     clear_px : float, optional
-        Ground between one object and the next, give or take 2 px.
+        Least ground between one object and the next.
     ground : float, optional
         Mean level of the ground.
     contrast : (float, float), optional

@@ -173,12 +173,11 @@ def _outlines(parcels: Sequence[Parcel], shape: tuple[int, int]) -> _Outlines:
     for i, parcel in enumerate(parcels):
         kind: BesideKind = "road" if parcel.kind == "road" else "neighbour"
         things.append(_Thing(i, kind, parcel.contrast))
-        parts += [(_points(one), len(things) - 1, j) for j, one in enumerate(parcel.borders)]
+        parts += [(one.points(), len(things) - 1, j) for j, one in enumerate(parcel.borders)]
         for strip in parcel.strips:
             things.append(_Thing(i, strip.kind, strip.contrast, strip.border))
-            sides = [
-                _points(parcel.borders[strip.border], at) for at in (strip.near_px, strip.far_px)
-            ]
+            along = parcel.borders[strip.border]
+            sides = [along.points(at) for at in (strip.near_px, strip.far_px)]
             parts.append((np.concatenate(sides), len(things) - 1, strip.border))
     things.append(_Thing(-1, "image border", 0.0))
     parts.append((_image_border(shape), len(things) - 1, -1))
@@ -187,12 +186,6 @@ def _outlines(parcels: Sequence[Parcel], shape: tuple[int, int]) -> _Outlines:
     thing, border = (np.repeat([part[k] for part in parts], sizes) for k in (1, 2))
     owner = np.array([one.owner for one in things])[thing]
     return _Outlines(tuple(things), places, thing, owner, border, cKDTree(places))
-
-
-def _points(border: Border, inwards_px: float = 0.0) -> Floats:
-    half = 0.5 * border.length_px
-    along = np.linspace(-half, half, math.ceil(border.length_px) + 1)
-    return np.column_stack(border.point(along, inwards_px))
 
 
 def _image_border(shape: tuple[int, int]) -> Floats:

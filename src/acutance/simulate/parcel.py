@@ -85,6 +85,11 @@ class Border:
         x, y = unit_vector(self.normal_deg)
         return self.row + s * y + t * x, self.col + s * x - t * y
 
+    def points(self, inwards_px: float = 0.0, step_px: float = 1.0) -> Floats:
+        """Places along the border, about `step_px` apart, moved along the normal; (n, 2)."""
+        half, count = 0.5 * self.length_px, math.ceil(self.length_px / step_px) + 1
+        return np.column_stack(self.point(np.linspace(-half, half, count), inwards_px))
+
     def part(self, begin_px: float, end_px: float) -> Border:
         """What lies between two distances along the border from its middle."""
         middle = 0.5 * (begin_px + end_px)
@@ -198,11 +203,7 @@ class Parcel:
 
     def outline(self, step_px: float = 1.0) -> Floats:
         """Points on all borders, about `step_px` apart, (n, 2) as (row, col)."""
-        found = []
-        for one in self.borders:
-            half, count = 0.5 * one.length_px, math.ceil(one.length_px / step_px) + 1
-            found.append(np.column_stack(one.point(np.linspace(-half, half, count))))
-        return np.concatenate(found)
+        return np.concatenate([one.points(step_px=step_px) for one in self.borders])
 
     def drawn(self, rows: Floats, cols: Floats, blur_px: float) -> tuple[Floats, Floats]:
         """What the parcel adds to the ground, and its cover, both blurred by a Gaussian.
