@@ -1,5 +1,6 @@
 """Images of one site on many days: what differs from day to day is what was said to."""
 
+import sys
 from datetime import UTC, datetime, timedelta
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 import acutance as ac
 from acutance.simulate import EdgeTarps, overflights
+from acutance.simulate.campaign import render_site
 
 TARP = EdgeTarps("edge", 40.0, 40.0, 6.0, 30.0, 200.0, 1200.0)
 DAYS = [datetime(2026, 1, 1, tzinfo=UTC) + timedelta(days=40 * at) for at in range(6)]
@@ -54,6 +56,23 @@ def test_the_air_blurs_each_image_by_an_amount_of_its_own():
     bare = one.sensor.response(6.0).metrics()["mtf_nyquist"].value
     expected = bare * np.exp(-2 * (np.pi * 0.5 * one.air_px) ** 2)
     assert abs(found.value - expected) < 3.5 * found.std < abs(found.value - bare)
+
+
+def test_the_air_changes_no_pixel_size(monkeypatch):
+    seen = []
+
+    def rendered(sensor, *arguments):
+        seen.append(sensor.pixel_m)
+        return render_site(sensor, *arguments)
+
+    monkeypatch.setattr(sys.modules[overflights.__module__], "render_site", rendered)
+    oblong = ac.Sensor([ac.optics.Gaussian(0.4), ac.optics.Detector()], gsd_m=1.0, gsd_along_m=1.5)
+    (one,) = overflights(
+        lambda _: oblong, [TARP], (80, 80), DAYS[:1],
+        noise_std=10.0, air_px=0.3, rng=np.random.default_rng(3),
+    )  # fmt: skip
+    assert one.air_px > 0
+    assert seen == [(1.5, 1.0)] == [one.sensor.pixel_m]
 
 
 def test_negative_deviations_are_refused():

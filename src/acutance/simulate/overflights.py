@@ -100,7 +100,7 @@ def overflights(
         row, col = (float(one) for one in rng.normal(0.0, pointing_px, 2))
         blur = float(abs(rng.normal(0.0, air_px)))
         sensor = require_sensor(sensor_on(acquired))
-        seen = Sensor([*sensor.blocks, Gaussian(blur)], gsd_m=sensor.gsd_m) if blur else sensor
+        seen = replace(sensor, blocks=[*sensor.blocks, Gaussian(blur)]) if blur else sensor
         there = [_moved(tarp, row, col) for tarp in tarps]
         pixels = render_site(seen, there, shape).image + rng.normal(0.0, noise_std, shape)
         counts = np.clip(np.rint(pixels), 0, np.iinfo(np.uint16).max).astype(np.uint16)
