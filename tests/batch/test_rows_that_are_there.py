@@ -206,3 +206,20 @@ def test_band_names_that_are_stated_later_count(write_field, run, run_stated):
     assert run(image, targets=only).missing_bands == ("pan",)
     found = run_stated(image, targets=only, band_names=("pan",))
     assert (found.measured, found.missing_bands) == (1, ())
+
+
+def test_an_image_that_the_plan_made_unreadable_is_read_once_the_plan_is_right(
+    write_field, run_stated, rows, overview
+):
+    image = write_field(0)
+    for names in (("pan", "nir"), ("blue", "green", "red")):
+        # Its one row says what is wrong now.
+        assert run_stated(image, band_names=names).reasons == {"unreadable image": 1}
+        (reason,) = rows()[1]["reason"]
+        assert reason.startswith(f"{len(names)} band_names are stated")
+    again = run_stated(image, band_names=("blue", "green", "red"))
+    assert (again.kept, again.done_before) == (0, 1)
+    found = run_stated(image, band_names=("pan",))
+    assert (found.kept, found.measured, found.unreadable) == (2, 2, ())
+    assert len(rows()[1]) == 0
+    assert (overview().images, set(rows()[0]["sensor"])) == (1, {"SIM-1"})

@@ -255,9 +255,6 @@ def _tasks(
             tally.bands.update(Band(*one) for one in image.bands or ())
         done = by_content.get(content or "", set())
         wanted = None if image is None else _wanted_keys(image, reading, work)
-        if unreadable_key(content, place) in done:
-            tally.add_earlier(file.path, [there[unreadable_key(content, place)]])
-            continue
         without_gsd = frozenset(key for key in done if _lacked_gsd(there[key]))
         again = without_gsd if image is not None and "gsd_m" in image.facts else frozenset()
         if image is not None and wanted is not None and wanted <= done - again:
@@ -311,6 +308,20 @@ def _outlived_keys(image: KnownImage, reading: Reading, work: BatchWork) -> set[
     return undated - wanted
 
 
+def _replaced(
+    task: BatchTask, found: MeasuredImage, there: Mapping[str, Outcome]
+) -> set[str]:
+    """Keys of rejections that are there and hold no longer, now that the image was opened.
+
+    That it cannot be read may be due to the plan or to a document beside it, not to its content.
+    """
+    own = {unreadable_key(task.content, task.place)} & task.done
+    if found.bands is None:
+        reasons = {one.rejected.reason for one in found.entries if one.rejected is not None}
+        return {key for key in own if there[key].reason not in reasons}
+    return own | {entry.key for entry in found.entries if entry.key in task.without_gsd}
+
+
 def _run(
     todo: Sequence[tuple[ImageFile, BatchTask]],
     plan: BatchPlan,
@@ -331,7 +342,7 @@ def _run(
         file, task = todo[place]
         if place in finished:
             return
-        again = {entry.key for entry in found.entries if entry.key in task.without_gsd}
+        again = _replaced(task, found, there)
         archive.remove_rejections(again)
         new = archive.add_entries(found.entries, run=number)
         finished.add(place)
