@@ -35,6 +35,7 @@ images = "K3_*.tif"
 sensor = "K3"
 gsd_m = 0.7
 metadata = "documents/K3_Aux.xml"
+linearize = "film.csv"
 
 [edge]
 method = "spline"
@@ -53,7 +54,14 @@ rows = 12
     )  # fmt: skip
     assert second.gsd_m == (0.7, 0.7)
     assert second.metadata == (str(tmp_path / "documents/K3_Aux.xml"),)
+    assert second.linearize == str(tmp_path / "film.csv")
     assert plan.options["edge"]["limits"] == {"rows": 12}
+
+
+@pytest.mark.parametrize("curve", ["sRGB", "sRGB:255", "LOG:85", "2.2", 2.2])
+def test_a_curve_that_is_no_table_stays_as_it_is(tmp_path, curve):
+    (stated,) = plan_of({**NEEDED, "stated": {"linearize": curve}}, "plan", tmp_path).stated
+    assert stated.linearize == curve
 
 
 def test_a_server_stays_as_it_is(tmp_path):

@@ -223,3 +223,16 @@ def test_an_image_that_the_plan_made_unreadable_is_read_once_the_plan_is_right(
     assert (found.kept, found.measured, found.unreadable) == (2, 2, ())
     assert len(rows()[1]) == 0
     assert (overview().images, set(rows()[0]["sensor"])) == (1, {"SIM-1"})
+
+
+def test_a_table_of_a_curve_counts_by_its_content(write_field, run_stated, tmp_path):
+    image, table = write_field(0), tmp_path / "film.csv"
+
+    def run_with(path, power):
+        path.write_text("\n".join(f"{value},{value**power}" for value in range(0, 4000, 50)))
+        return run_stated(image, linearize=str(path))
+
+    assert run_with(table, 1.0).kept == 2
+    assert run_with(tmp_path / "copy.csv", 1.0).done_before == 2
+    # Another curve under the same name.
+    assert run_with(table, 1.5).kept == 2

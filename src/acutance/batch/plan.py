@@ -18,6 +18,7 @@ from acutance.batch.plan_options import faults_of_plan
 from acutance.errors import OptionError
 from acutance.raster.document_faults import document_faults
 from acutance.raster.gsd import Gsd
+from acutance.raster.linearization import table_of
 from acutance.raster.metadata.findings import ANGLES
 from acutance.raster.metadata.times import is_possible, possible_days, time_or_day
 from acutance.raster.nearest_name import nearest_name
@@ -279,13 +280,15 @@ def _stated(given: _Stated, folder: Path) -> StatedOfImages:
     plain = {
         name: getattr(given, name)
         for name in _Stated.model_fields
-        if name not in ("images", "band_names", "gsd_m", "metadata")
+        if name not in ("images", "band_names", "gsd_m", "metadata", "linearize")
     }
+    table = table_of(given.linearize)
     return StatedOfImages(
         images=tuple(_pattern(folder, one) for one in _texts(given.images or [])),
         band_names=None if given.band_names is None else tuple(given.band_names),
         gsd_m=sides,
         metadata=None if documents is None else tuple(_below(folder, one) for one in documents),
+        linearize=given.linearize if table is None else _below(folder, table),
         **plain,
     )
 

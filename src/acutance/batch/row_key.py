@@ -11,7 +11,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from acutance.batch.image_list import content_of
 from acutance.batch.plan_options import ChosenOptions
+from acutance.raster.linearization import table_of
 from acutance.raster.surveyed_targets import SurveyedTarget
 
 __all__ = [
@@ -58,8 +60,11 @@ class Reading:
 
 
 def reading_of(stated: Mapping[str, Any]) -> Reading:
-    """The digests of what is stated of an image."""
+    """The digests of what is stated of an image; of a table of a curve its content counts."""
     at_height = {key: one for key, one in stated.items() if one is not None}
+    table = table_of(at_height.get("linearize"))
+    if table is not None:
+        at_height["linearize"] = content_of(table) or table
     pixels = {key: one for key, one in at_height.items() if key != "height_m"}
     return Reading(_digest(pixels), _digest(at_height))
 

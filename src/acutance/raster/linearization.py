@@ -32,8 +32,10 @@ __all__ = [
     "SrgbCurve",
     "TableCurve",
     "characteristic",
+    "table_of",
 ]
 
+_NAMED = r"(srgb|log)(:.*)?|\d*\.?\d+"
 _SRGB_KNEE = 0.04045
 _SRGB_SLOPE = 12.92
 _SRGB_OFFSET = 0.055
@@ -311,6 +313,12 @@ def characteristic(asked: LinearizeLike, full_scale: float | None) -> Characteri
     return TableCurve.of_file(asked)
 
 
+def table_of(asked: LinearizeLike) -> str | None:
+    """The path of the table that was asked for; None of any other curve."""
+    is_name = not isinstance(asked, str) or re.fullmatch(_NAMED, asked.lower())
+    return None if is_name else str(asked)
+
+
 def _require_scale(full_scale: float) -> None:
     require_numbers(full_scale=full_scale)
     if not 0 < full_scale < math.inf:
@@ -352,7 +360,7 @@ def _rows(path: str) -> Floats:
     try:
         text = Path(path).read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
-        if re.fullmatch(r"\d*\.?\d+", path):
+        if table_of(path) is None:
             raise OptionError(
                 f"the curve {path!r} is a text: a power law is the number {path} "
                 f"(linearize={path}, --gamma {path})"
