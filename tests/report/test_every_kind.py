@@ -8,6 +8,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from test_figures import outside, overlaps, texts
 
 import acutance as ac
@@ -23,6 +24,8 @@ from acutance.report import (
     text,
 )
 from acutance.report.figure import KIND_PANELS
+from acutance.report.figures.points import points_panels
+from acutance.report.labels import write_fixed
 from acutance.report.paper import new_page, styled
 from acutance.report.tables.combined import PARAMETERS
 from acutance.report.tables.result import KIND_TABLES
@@ -196,3 +199,34 @@ def test_a_source_darker_than_its_ground_is_drawn():
     first = replace(measured.sources[0], peak=-measured.sources[0].peak)
     odd = replace(measured, sources=(first, *measured.sources[1:]))
     draw(odd).draw_without_rendering()
+
+
+def flown_along_rows(result):
+    return replace(result, image=replace(result.image, along_track="x"))
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_aligned_samples_are_named_as_the_image_was_flown():
+    found = mirrors().aligned
+    sides = {"y": (found.sigma_x_px, found.sigma_y_px), "x": (found.sigma_y_px, found.sigma_x_px)}
+    for result in (mirrors(), flown_along_rows(mirrors())):
+        (table,) = (one for one in tables(result) if one.title == "Aligned samples")
+        across, along = (f"{one:.4f}" for one in sides[result.image.along_track])
+        assert table.rows[:2] == (("σ across [px]", across), ("σ along [px]", along))
+        (panel,) = (one for one in points_panels(result) if one.title == "Aligned samples")
+        figure = Figure()
+        panel.draw(figure)
+        drawn = {axes.get_ylabel(): axes.lines[1].get_ydata() for axes in figure.axes}
+        for name, sigma in zip(("across", "along"), sides[result.image.along_track], strict=True):
+            np.testing.assert_allclose(drawn[name][0], np.exp(-0.5 * (2.6 / sigma) ** 2))
+
+
+def test_the_iterations_of_a_pair_are_named_as_the_image_was_flown():
+    for result, x, y in ((pair(), "across", "along"), (flown_along_rows(pair()), "along", "across")):
+        (table,) = (one for one in tables(result) if one.title.startswith("Iterations"))
+        last = dict(zip(table.columns, table.rows[-1], strict=True))
+        step = result.steps[-1]
+        assert last[f"shift {y} [px]"] == write_fixed(step.shift_px[0])
+        assert last[f"shift {x} [px]"] == write_fixed(step.shift_px[1])
+        assert last[f"variance {y} [px²]"] == write_fixed(step.variance_px2[0])
+        assert last[f"variance {x} [px²]"] == write_fixed(step.variance_px2[1])

@@ -12,7 +12,7 @@ from acutance.curves import Otf2d
 from acutance.curves.grid import Floats, crossing
 from acutance.curves.metrics import NYQUIST_CPP
 from acutance.report.figures.panel import Panel, on_axes
-from acutance.report.labels import spread_name, transfer_name, word_estimate
+from acutance.report.labels import axis_names, spread_name, transfer_name, word_estimate
 from acutance.report.paper import BLUE, FAINT, GREEN, INK, SHADE, VERMILION
 
 if TYPE_CHECKING:
@@ -218,7 +218,7 @@ def draw_transfer_map(axes: Axes, measurement: Measurement) -> None:
 
 def axis_labels(measurement: Measurement, unit: str) -> dict[str, str]:
     """What the axes of a map are called: x across track, unless x was declared along track."""
-    x, y = ("across", "along") if measurement.image.along_track == "y" else ("along", "across")
+    x, y = axis_names(measurement.image.along_track)
     return {"xlabel": f"{x} [{unit}]", "ylabel": f"{y} [{unit}]"}
 
 

@@ -13,6 +13,7 @@ from acutance.report.figures.curves import axis_labels
 from acutance.report.figures.labels_apart import labels_apart
 from acutance.report.figures.panel import Panel, on_axes
 from acutance.report.figures.pixels import show_pixels
+from acutance.report.labels import axis_names
 from acutance.report.paper import BLUE, FAINT, INK, ORANGE, VERMILION
 
 if TYPE_CHECKING:
@@ -226,13 +227,14 @@ def _number_apart(axes: Axes, places: Floats, points: Sequence[int], reach: floa
 def _draw_aligned(page: FigureBase, measurement: PointsMeasurement) -> None:
     found = measurement.details.published
     assert found is not None
+    x_name, y_name = axis_names(measurement.image.along_track)
     for axes, places, other, sigma, name in (
         (part, *rest)
         for part, rest in zip(
             page.subplots(2, 1, sharex=True),
             (
-                (found.x, found.y, found.psf.sigma_x_px, "across"),
-                (found.y, found.x, found.psf.sigma_y_px, "along"),
+                (found.x, found.y, found.psf.sigma_x_px, x_name),
+                (found.y, found.x, found.psf.sigma_y_px, y_name),
             ),
             strict=True,
         )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from acutance.report.html import Table
-from acutance.report.labels import format_number, transfer_name, word_estimate, write_fixed
+from acutance.report.labels import axis_names, format_number, transfer_name, word_estimate, write_fixed
 
 if TYPE_CHECKING:
     from acutance.targets.pair import BiresolutionMeasurement
@@ -48,9 +48,10 @@ def _iterations_table(measurement: BiresolutionMeasurement) -> Table:
         f"the residual falls below the threshold {measurement.options['stop_change']:g} (Li et "
         "al., 5.3). The free kernel starts from the last one."
     )
+    x, y = axis_names(measurement.image.along_track)
     columns = (
-        "step", "residual [DN]", "relative change", "shift down [px]", "shift across [px]",
-        "variance along [px²]", "variance across [px²]",
+        "step", "residual [DN]", "relative change", f"shift {y} [px]", f"shift {x} [px]",
+        f"variance {y} [px²]", f"variance {x} [px²]",
     )  # fmt: skip
     return Table(
         columns, rows, "rrrrrrr", title="Iterations of the parametric fit", notes=(note,),
@@ -69,7 +70,7 @@ def _pair_table(measurement: BiresolutionMeasurement) -> Table:
     rows, cols = measurement.ratio
     same = format_number(rows) == format_number(cols)
     ratio = format_number(rows) if same else f"{format_number(rows)} by {format_number(cols)}"
-    down, across = (word_estimate(one).value_and_std for one in measurement.shift_px)
+    down, right = (word_estimate(one).value_and_std for one in measurement.shift_px)
     share = f", {100 * measurement.share_read:.0f} % of the scene" * (measurement.share_read < 1)
     local = measurement.local
     mtf = [measurement.local_mtf_nyquist(axis)[0] for axis in ("across", "along")]
@@ -77,7 +78,7 @@ def _pair_table(measurement: BiresolutionMeasurement) -> Table:
     found = (
         ("high image", f"{high.path or 'array in memory'}, band {high.band_label}"),
         ("ratio of the GSDs", f"{ratio}, {SOURCES[grid.source]}"),
-        ("shift of the low content", f"{down} px down, {across} px across"),
+        ("shift of the low content", f"{down} px down, {right} px to the right"),
         ("gain, offset", f"{measurement.gain:.5g}, {measurement.offset:.5g} DN"),
         ("low pixels used", f"{measurement.used} (left out {measurement.left_out}){share}"),
         (

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from acutance.arguments import require_class
 from acutance.report.html import Table
-from acutance.report.labels import MISSING, format_number, word_estimate, write_fixed
+from acutance.report.labels import MISSING, axis_names, format_number, word_estimate, write_fixed
 
 if TYPE_CHECKING:
     from acutance.targets.points import Pads, PointsMeasurement
@@ -27,7 +27,7 @@ def points_tables(measurement: PointsMeasurement) -> tuple[Table, ...]:
     if measurement.survey is not None:
         tables.append(_survey_table(measurement.survey))
     if measurement.aligned is not None:
-        tables.append(_aligned_table(measurement.aligned))
+        tables.append(_aligned_table(measurement.aligned, measurement.image.along_track))
     return tuple(tables)
 
 
@@ -98,10 +98,11 @@ def _survey_table(survey: SurveyErrors) -> Table:
     )  # fmt: skip
 
 
-def _aligned_table(found: AlignedFit) -> Table:
+def _aligned_table(found: AlignedFit, along_track: str) -> Table:
+    x, y = axis_names(along_track)
+    sigma_px = {x: found.sigma_x_px, y: found.sigma_y_px}
     rows = (
-        ("σ across [px]", f"{found.sigma_x_px:.4f}"),
-        ("σ along [px]", f"{found.sigma_y_px:.4f}"),
+        *((f"σ {name} [px]", f"{sigma_px[name]:.4f}") for name in ("across", "along")),
         ("RMSE of the aligned fit [DN]", format_number(found.rmse)),
         ("NoiseMean [DN]", format_number(found.background_mean)),
         ("NoiseStd [DN]", format_number(found.background_std)),

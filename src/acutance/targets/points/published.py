@@ -82,7 +82,7 @@ class GaussianPsf:
     Parameters
     ----------
     sigma_x_px, sigma_y_px : float
-        Standard deviations across and along.
+        Standard deviations along the rows and down the columns.
     factor_px : (2, k) tuple of tuples
         Factor of the covariance of both.
     """
