@@ -68,3 +68,20 @@ def test_means_of_several_methods_are_told_to_be_that(
     assert note in mixed.to_dict()["notes"]
     for parted in (filled.table(("target", "method")), filled.table(method="spline")):
         assert not any("methods" in one for one in parted.notes)
+
+
+def test_the_gsd_of_a_direction_is_its_own(
+    archive: Archive, edge_record: ac.Record, entry_of: Any
+) -> None:
+    """Pixels that are 0.7 m across and 0.8 m along: no table across says 0.7 to 0.8 m."""
+    sides_m = {"across": 0.7, "along": 0.8}
+    for number, (direction, gsd_m) in enumerate(sides_m.items()):
+        edge = {"orientation": direction, "measured_directions": [direction], "gsd_m": gsd_m}
+        record = ac.Record({**edge_record.document, **edge})
+        archive.add_entries([entry_of(number, record=record)])
+    table = archive.table(("sensor",), ("mtf_nyquist",))
+    assert table.rows[0].gsd_m == (0.7, 0.8)
+    for direction, gsd_m in sides_m.items():
+        (row,) = table.of_direction(direction).rows
+        assert row.gsd_m == (gsd_m, gsd_m)
+        assert [text[2] for text in table.of_direction(direction).texts()] == [f"{gsd_m}"]

@@ -66,6 +66,8 @@ class TableRow:
         The measurements of every cell.
     images_by : dict of str to int
         Images in which something of a direction was measured.
+    gsd_by : dict of str to ((float, float) or None)
+        Of a direction.
     """
 
     group: tuple[str, ...]
@@ -75,6 +77,7 @@ class TableRow:
     cells: dict[tuple[str, str], Estimate]
     counts: dict[tuple[str, str], int]
     images_by: dict[str, int]
+    gsd_by: dict[str, tuple[float, float] | None]
 
     @property
     def is_average(self) -> bool:
@@ -160,6 +163,7 @@ class MeasurementTable:
             replace(
                 row,
                 images=row.images_by[orientation],
+                gsd_m=row.gsd_by[orientation],
                 cells={key: one for key, one in row.cells.items() if key[0] == orientation},
                 counts={key: one for key, one in row.counts.items() if key[0] == orientation},
                 images_by={orientation: row.images_by[orientation]},
@@ -276,7 +280,7 @@ def _mask(keys: list[tuple[str, ...]], prefix: tuple[str, ...]) -> NDArray[np.bo
 def _row(
     rows: Columns, group: tuple[str, ...], mask: NDArray[np.bool_], metrics: Sequence[str]
 ) -> TableRow:
-    cells, counts, images_by = {}, {}, {}
+    cells, counts, images_by, gsd_by = {}, {}, {}, {}
     for orientation in ORIENTATIONS:
         own = mask & (rows["orientation"] == orientation)
         seen = np.zeros(own.size, bool)
@@ -288,13 +292,16 @@ def _row(
                 seen |= known
         if seen.any():
             images_by[orientation] = np.unique(rows["image_id"][seen]).size
-    gsd_m = rows["gsd_m"][mask]
-    known = gsd_m[np.isfinite(gsd_m)]
+            gsd_by[orientation] = _range(rows["gsd_m"][seen])
     return TableRow(
         group, np.unique(rows["image_id"][mask]).size, np.unique(rows["id"][mask]).size,
-        (float(known.min()), float(known.max())) if known.size else None, cells, counts,
-        images_by,
-    )  # fmt: skip
+        _range(rows["gsd_m"][mask]), cells, counts, images_by, gsd_by,
+    )
+
+
+def _range(numbers: NDArray[np.float64]) -> tuple[float, float] | None:
+    known = numbers[np.isfinite(numbers)]
+    return (float(known.min()), float(known.max())) if known.size else None
 
 
 def _cell(rows: Columns, metric: str, mask: NDArray[np.bool_]) -> Estimate:
