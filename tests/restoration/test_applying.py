@@ -196,7 +196,8 @@ def test_everything_else_of_a_file_is_kept(sharpening, tmp_path):
         dataset.update_tags(MISSION="one", TIFFTAG_DATETIME="2026:01:02 03:04:05")
         dataset.update_tags(ns="IMD", cloudCover="0.1")
         dataset.update_tags(ns="VENDOR", ORBIT="17")
-        dataset.update_tags(2, GAIN="7")
+        dataset.update_tags(2, GAIN="7", STATISTICS_MAXIMUM="1500")
+        dataset.update_tags(1, STATISTICS_MAXIMUM="1400")
         dataset.descriptions = ("pan", "red", "alpha")
         dataset.scales, dataset.offsets = (0.1, 0.1, 1.0), (5.0, 5.0, 0.0)
         dataset.units = ("W", "W", "")
@@ -215,6 +216,9 @@ def test_everything_else_of_a_file_is_kept(sharpening, tmp_path):
         assert new.tags(ns="IMD")["cloudCover"] == "0.1"
         assert new.tags()["VENDOR.ORBIT"] == "17"
         assert new.tags(2)["GAIN"] == "7"
+        # GDAL's numbers of pixels that are others now.
+        assert "STATISTICS_MAXIMUM" not in new.tags(2)
+        assert new.tags(1)["STATISTICS_MAXIMUM"] == "1400"
         assert "bands 2; noise gain 1.8" in new.tags()["ACUTANCE_RESTORATION"]
         assert new.tags(ns="IMAGE_STRUCTURE")["LAYOUT"] == "COG"
         assert np.array_equal(new.read(1), old.read(1))

@@ -33,6 +33,8 @@ __all__ = ["StoredWindow", "rewrite_image", "stored_tags"]
 _WINDOW_ROWS, _WINDOW_COLS = 1024, 4096
 _BLOCK_PX = 512
 _ADVICE = "check that the folder exists, may be written to and has room for twice the image"
+_ABOUT_PIXELS = "STATISTICS_"
+"""What GDAL notes of a band's pixels; viewers stretch the image by it."""
 _OWN_DOMAINS = ("IMAGE_STRUCTURE", "DERIVED_SUBDATASETS", "RPC", "IMD", "COLOR_PROFILE", "TIFF")
 
 
@@ -125,7 +127,7 @@ def rewrite_image(
             plain = os.path.join(folder, "plain.tif")
             made = open_quietly(plain, "w", **_profile(source, values.common))
             stack.callback(made.close)
-            _copy_descriptions(source, made, tags or {})
+            _copy_descriptions(source, made, tags or {}, bands)
         boxes = list(_boxes((source.height, source.width)))
         done, total = 0, source.height * source.width
         moved = dict.fromkeys(range(1, source.count + 1), 0)
@@ -269,8 +271,10 @@ def _cog_options(source: Any) -> dict[str, Any]:
     }
 
 
-def _copy_descriptions(source: Any, made: Any, tags: dict[str, str]) -> None:
-    """Everything of a file that is no pixel."""
+def _copy_descriptions(
+    source: Any, made: Any, tags: dict[str, str], changed: Sequence[int]
+) -> None:
+    """Everything of a file that is no pixel, nor about pixels that are changed."""
     gcps, crs = source.gcps
     if gcps:
         made.gcps = (gcps, crs)
@@ -284,7 +288,9 @@ def _copy_descriptions(source: Any, made: Any, tags: dict[str, str]) -> None:
         made.update_tags(ns="IMD", **source.tags(ns="IMD"))
     made.update_tags(**(_items(source) | tags))
     for band in range(1, source.count + 1):
-        made.update_tags(band, **_items(source, band))
+        items = _items(source, band)
+        stale = [name for name in items if band in changed and name.startswith(_ABOUT_PIXELS)]
+        made.update_tags(band, **{name: items[name] for name in items if name not in stale})
 
 
 def _items(source: Any, band: int = 0) -> dict[str, str]:
