@@ -28,6 +28,20 @@ def test_a_gsd_of_numpys_numbers_comes_back(tmp_path, pixels):
     assert open_image(path).gsd() == Gsd(0.7, 0.5)
 
 
+@pytest.mark.parametrize(
+    ("crs", "step", "seen_m"),
+    [("EPSG:32631", 1.4, 1.4), ("EPSG:4326", 1e-5, 1.11), (None, 1.4, 0.7)],
+)
+def test_the_map_of_an_image_goes_before_the_gsd_it_was_written_with(
+    tmp_path, pixels, crs, step, seen_m
+):
+    """What resamples an image keeps its metadata: it would have the GSD it had before."""
+    place = (step, 0.0, 3.0, 0.0, -step, 0.0)
+    write_geotiff(tmp_path / "a.tif", pixels, gsd_m=0.7, crs=crs, transform=place)
+    image = open_image(tmp_path / "a.tif")
+    assert image.gsd().col_m == image.gsd_of_file().col_m == pytest.approx(seen_m, abs=0.004)
+
+
 def test_tiles_and_compression(tmp_path):
     path = tmp_path / "a.tif"
     write_geotiff(path, np.zeros((1000, 900), np.uint16))

@@ -117,8 +117,8 @@ def open_dataset(path: str, band: int, gsd: Gsd | None, nodata: float | None) ->
             )
         flags = dataset.mask_flag_enums[band - 1]
         level = _largest_count(dataset, band)
-        declared = _declared_gsd(dataset)
         geolocation = _geolocation(dataset)
+        declared = _declared_gsd(dataset, geolocation)
         return Image(
             path=path,
             band=band,
@@ -309,10 +309,16 @@ def _geolocation(dataset: Any) -> Geolocation | None:
     return Geolocation((a, b, c, d, e, f), dataset.crs.to_string())
 
 
-def _declared_gsd(dataset: Any) -> Gsd | None:
-    """The GSD that `write_geotiff` was given."""
+def _declared_gsd(dataset: Any, geolocation: Geolocation | None) -> Gsd | None:
+    """The GSD that `write_geotiff` was given, of an image whose map says none.
+
+    What resamples an image keeps its metadata, and states its new pixels by the map.
+    """
     tags = dataset.tags()
     try:
-        return Gsd(*(float(tags[name]) for name in GSD_TAGS))
+        declared = Gsd(*(float(tags[name]) for name in GSD_TAGS))
     except (KeyError, ValueError, OptionError):
         return None
+    middle = (dataset.height - 1) / 2, (dataset.width - 1) / 2
+    has_own = geolocation is not None and geolocation.gsd(*middle) is not None
+    return None if has_own else declared

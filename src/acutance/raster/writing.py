@@ -56,7 +56,7 @@ def write_geotiff(
         The value of unusable pixels.
     gsd_m : float or Gsd, optional
         Ground sampling distance in metres, kept as metadata that `open_image` reads, for an
-        image that has no CRS to derive it from.
+        image that has no CRS to derive it from; with one, the geotransform counts.
     tags : mapping of str to str, optional
         Metadata of the file, by name: "ACQUISITION_DATETIME", "SENSOR".
 
