@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import acutance as ac
-from acutance.archive import Archive
+from acutance.archive import Archive, ImageEntry
 
 BY_TARGET = (("target",), ("mtf_nyquist",))
 
@@ -85,3 +85,14 @@ def test_the_gsd_of_a_direction_is_its_own(
         (row,) = table.of_direction(direction).rows
         assert row.gsd_m == (gsd_m, gsd_m)
         assert [text[2] for text in table.of_direction(direction).texts()] == [f"{gsd_m}"]
+
+
+def test_images_of_one_file_name_are_rows_of_their_own(filled: Archive, entry_of: Any) -> None:
+    other = ImageEntry(path="/images/elsewhere/0.tif", content="f" * 64, sensor="K3")
+    filled.add_entries([entry_of(0, image=other)])
+    rows = filled.measurements(sensor="K3")
+    numbers = sorted(set(rows["image_id"][rows["image"] == "0.tif"].tolist()))
+    table = filled.table(("image",), ("mtf_nyquist",), sensor="K3")
+    own = [row for row in table.rows if not row.is_average]
+    assert [row.group for row in own[:2]] == [(f"0.tif (image_id {one})",) for one in numbers]
+    assert [row.images for row in own] == [1] * len(own)

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.archive.columns import Columns, csv_text
+from acutance.archive.group_words import NO_WORD, group_words
 from acutance.archive.mean_of_images import mean_of_images
 from acutance.archive.measurements import Measurements
 from acutance.archive.mixed_methods import mixed_methods_notes
@@ -38,7 +39,6 @@ _NEVER_MIXED: Final = ("sensor", "band", "level")
 PRINTED: Final = ("prf_fwhm_px", "prf_fwhm_m")
 """Numbers of published tables that are no metric: widths of pulse responses, the target's included.
 They are read from the documents."""
-_NONE: Final = "–"
 AVERAGE: Final = "average"
 _MEANS: Final = (
     "± of a mean holds the scatter between images (of one image: between its targets), and between "
@@ -220,7 +220,7 @@ def table_by(
     by, metrics = require_texts("by", by), require_texts("metrics", metrics)
     _require(rows, by, metrics)
     numbers = _with_printed(rows, [name for name in metrics if name in PRINTED])
-    words = {name: _words(rows, name) for name in GROUPS}
+    words = {name: group_words(rows, name) for name in GROUPS}
     lead = [name for name in _NEVER_MIXED if name not in by and len(set(words[name])) > 1]
     names = (*lead, *by)
     keys = list(zip(*(words[name] for name in names), strict=True))
@@ -264,13 +264,6 @@ def _with_printed(rows: Measurements, names: Sequence[str]) -> Columns:
         columns[name] = np.array(found, float)
         columns[f"{name}_std"] = np.full(len(rows), np.nan)
     return Columns(columns)
-
-
-def _words(rows: Columns, name: str) -> list[str]:
-    if name == "date":
-        days = rows["acquired"].astype("datetime64[D]")
-        return [_NONE if np.isnat(day) else str(day) for day in days]
-    return [_NONE if one is None else str(one) for one in rows[name].tolist()]
 
 
 def _mask(keys: list[tuple[str, ...]], prefix: tuple[str, ...]) -> NDArray[np.bool_]:
@@ -364,12 +357,12 @@ def _single_cells(row: TableRow) -> set[tuple[str, str]]:
 
 
 def _text(estimate: Estimate | None) -> str:
-    return _NONE if estimate is None else str(estimate)
+    return NO_WORD if estimate is None else str(estimate)
 
 
 def _gsd_text(gsd_m: tuple[float, float] | None) -> str:
     if gsd_m is None:
-        return _NONE
+        return NO_WORD
     low, high = gsd_m
     return f"{low:.3g}" if high <= 1.005 * low else f"{low:.3g}–{high:.3g}"
 
