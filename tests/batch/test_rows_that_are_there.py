@@ -223,6 +223,10 @@ def test_an_image_that_the_plan_made_unreadable_is_read_once_the_plan_is_right(
     assert (found.kept, found.measured, found.unreadable) == (2, 2, ())
     assert len(rows()[1]) == 0
     assert (overview().images, set(rows()[0]["sensor"])) == (1, {"SIM-1"})
+    # A wrong plan takes nothing from what was measured before.
+    assert run_stated(image, band_names=("pan", "nir")).unreadable == (str(image),)
+    assert run_stated(image, band_names=("pan",)).done_before == 2
+    assert len(rows()[1]) == 0
 
 
 def test_a_table_of_a_curve_counts_by_its_content(write_field, run_stated, tmp_path):

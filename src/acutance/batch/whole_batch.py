@@ -262,6 +262,7 @@ def _tasks(
             tally.add_stated(wanted, stated_entry(stated))
             tally.add_said(wanted, entry_of_facts(image.facts))
             tally.outlived |= _outlived_keys(image, reading, work)
+            tally.outlived |= {unreadable_key(content, place)} & done
             continue
         task = BatchTask(file.path, place, content, stated, reading, frozenset(done), without_gsd)
         found.append((file, task))
