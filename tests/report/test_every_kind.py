@@ -222,7 +222,8 @@ def test_aligned_samples_are_named_as_the_image_was_flown():
 
 
 def test_the_iterations_of_a_pair_are_named_as_the_image_was_flown():
-    for result, x, y in ((pair(), "across", "along"), (flown_along_rows(pair()), "along", "across")):
+    turned = flown_along_rows(pair())
+    for result, x, y in ((pair(), "across", "along"), (turned, "along", "across")):
         (table,) = (one for one in tables(result) if one.title.startswith("Iterations"))
         last = dict(zip(table.columns, table.rows[-1], strict=True))
         step = result.steps[-1]

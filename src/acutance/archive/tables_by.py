@@ -287,8 +287,14 @@ def _row(
             images_by[orientation] = np.unique(rows["image_id"][seen]).size
             gsd_by[orientation] = _range(rows["gsd_m"][seen])
     return TableRow(
-        group, np.unique(rows["image_id"][mask]).size, np.unique(rows["id"][mask]).size,
-        _range(rows["gsd_m"][mask]), cells, counts, images_by, gsd_by,
+        group,
+        np.unique(rows["image_id"][mask]).size,
+        np.unique(rows["id"][mask]).size,
+        _range(rows["gsd_m"][mask]),
+        cells,
+        counts,
+        images_by,
+        gsd_by,
     )
 
 

@@ -309,9 +309,7 @@ def _outlived_keys(image: KnownImage, reading: Reading, work: BatchWork) -> set[
     return undated - wanted
 
 
-def _replaced(
-    task: BatchTask, found: MeasuredImage, there: Mapping[str, Outcome]
-) -> set[str]:
+def _replaced(task: BatchTask, found: MeasuredImage, there: Mapping[str, Outcome]) -> set[str]:
     """Keys of rejections that are there and hold no longer, now that the image was opened.
 
     That it cannot be read may be due to the plan or to a document beside it, not to its content.

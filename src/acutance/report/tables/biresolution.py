@@ -7,7 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from acutance.report.html import Table
-from acutance.report.labels import axis_names, format_number, transfer_name, word_estimate, write_fixed
+from acutance.report.labels import (
+    axis_names,
+    format_number,
+    transfer_name,
+    word_estimate,
+    write_fixed,
+)
 
 if TYPE_CHECKING:
     from acutance.targets.pair import BiresolutionMeasurement
