@@ -44,3 +44,20 @@ def test_an_image_whose_pixels_are_cut_off_is_named_each_time(write_field, run):
         assert found.reasons.get("unreadable image", 0) >= 1
         assert found.unreadable == (str(cut),)
         assert found.faults[str(cut)]
+
+
+def test_nothing_is_kept_of_a_file_that_changes_while_the_batch_runs(write_field, run, rows):
+    """It would be kept under the content that the file had before."""
+    changing, other = write_field(0), write_field(1)
+    new = other.read_bytes()
+
+    def copy_over(done, total):
+        if done == 0 and changing.read_bytes() != new:
+            changing.write_bytes(new)
+
+    found = run(changing, progress=copy_over)
+    assert (found.kept, found.measured, found.unreadable) == (0, 0, (str(changing),))
+    assert "changed while the batch ran" in found.faults[str(changing)]
+    again = run(changing)
+    assert (again.kept, again.unreadable, again.earlier_contents) == (2, (), {})
+    assert len(rows()[0]) == 2

@@ -31,11 +31,23 @@ class ImageFile:
         same, so does what is remembered of the image. Empty if there is no such file.
     size : int
         Bytes.
+    changed_ns : int
+        When it was changed last.
     """
 
     path: str
     stamp: str
     size: int
+    changed_ns: int = 0
+
+    @property
+    def has_changed(self) -> bool:
+        """Whether it is another file by now, or gone."""
+        try:
+            now = os.stat(self.path)
+        except OSError:
+            return True
+        return (now.st_size, now.st_mtime_ns) != (self.size, self.changed_ns)
 
 
 def list_images(patterns: Iterable[str]) -> list[ImageFile]:
@@ -104,7 +116,8 @@ def _image_file(path: str) -> ImageFile:
     except OSError:
         return ImageFile(path, "", 0)
     beside = [(one.name, *_stat(one)) for one in files_beside(path)]
-    return ImageFile(path, repr([own.st_size, own.st_mtime_ns, beside]), own.st_size)
+    stamp = repr([own.st_size, own.st_mtime_ns, beside])
+    return ImageFile(path, stamp, own.st_size, own.st_mtime_ns)
 
 
 def _stat(path: Path) -> tuple[int, int]:

@@ -25,6 +25,7 @@ __all__ = ["BatchSummary", "Tally"]
 
 NO_FILE = "no such file"
 """Why an image that is not there has no measurement."""
+_CHANGED = "it was changed while the batch ran, and nothing of it is kept: run the batch again"
 VERDICTS = ("good", "usable", "doubtful", "invalid")
 
 
@@ -181,7 +182,7 @@ class Tally:
         self.measuring_s += found.measuring_s
         if found.bands is None:
             self.faults[path] = next((one.rejected.reason for one in found.entries
-                                      if one.rejected is not None), "")  # fmt: skip
+                                      if one.rejected is not None), _CHANGED)  # fmt: skip
         else:
             self.bands.update(found.bands)
         if found.image is not None and is_restored(found.image.sources):

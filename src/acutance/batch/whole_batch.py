@@ -341,6 +341,9 @@ def _run(
         file, task = todo[place]
         if place in finished:
             return
+        if task.content is not None and file.has_changed:
+            # What was measured may be of another content than the one it would be kept under.
+            found = replace(found, entries=[], bands=None)
         again = _replaced(task, found, there)
         archive.remove_rejections(again)
         new = archive.add_entries(found.entries, run=number)
