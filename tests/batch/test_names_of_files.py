@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 
+import numpy as np
 import pytest
 
 from acutance.archive import Archive, Entry, ImageEntry
@@ -90,6 +91,21 @@ def test_a_name_that_is_no_utf8_is_one_row(write_field, run, rows, tmp_path):
     assert run(strange).unreadable == (strange,)
     os.rename(strange, tmp_path / "gone.tif")
     assert run(strange).missing == (strange,)
+
+
+def test_an_array_whose_name_is_no_utf8_is_one_row(write_field, run, rows, tmp_path):
+    """It ended the whole batch: no JSON takes such a name."""
+    good = write_field(0)
+    strange = os.fsdecode(os.fsencode(tmp_path) + b"/field-\xe9.npy")
+    try:
+        with open(strange, "wb") as file:
+            np.save(file, np.ones((40, 40)))
+    except OSError:
+        pytest.skip("the disk takes no such name")
+    found = run(good, strange)
+    assert (found.measured, found.unreadable) == (2, (strange,))
+    (reason,) = rows()[1]["reason"]
+    assert reason.endswith("is no UTF-8: rename the file")
 
 
 def test_a_link_that_leads_nowhere_is_a_missing_file(write_field, run, rows, tmp_path):

@@ -203,6 +203,12 @@ def _as_number(band: Any, name: str) -> int:
 
 
 def _open_npy(path: str, band: int, gsd: Gsd | None, nodata: float | None) -> Image:
+    try:
+        path.encode()
+    except UnicodeEncodeError as error:
+        # As of a file that GDAL reads: no document and no archive takes such a name.
+        shown = os.fsencode(path).decode("utf-8", "replace")
+        raise ImageError(f"the name {shown} is no UTF-8: rename the file") from error
     source = NpyPixels(path, nodata)
     array: NDArray[Any] = source.map()
     require_image_array(array, path)
