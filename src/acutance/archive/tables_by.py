@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from acutance.archive.columns import Columns, csv_text
 from acutance.archive.group_words import NO_WORD, group_words
 from acutance.archive.mean_of_images import mean_of_images
+from acutance.archive.measured_again import measured_again_notes
 from acutance.archive.measurements import Measurements
 from acutance.archive.mixed_methods import mixed_methods_notes
 from acutance.archive.natural_order import natural_key
@@ -230,7 +231,8 @@ def table_by(
                                 and len(set(words[one])) > 1), default=0))  # fmt: skip
     return MeasurementTable(
         names, tuple(metrics), tuple(_with_averages(numbers, found, keys, fixed, metrics)),
-        (*mixed_methods_notes(words, by), *restored_notes(rows)),
+        (*mixed_methods_notes(words, by), *restored_notes(rows),
+         *measured_again_notes(rows)),
     )  # fmt: skip
 
 

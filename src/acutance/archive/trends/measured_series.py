@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acutance.archive.columns import Columns
+from acutance.archive.measured_again import measured_again_notes
 from acutance.archive.natural_order import natural_key
 from acutance.archive.restored_images import restored_notes
 from acutance.archive.trends.gsd import SAME_GSD, gsd_classes
@@ -216,7 +217,7 @@ def _series(rows: Columns, metric: str, mask: NDArray[np.bool_], size: str | Non
         name=_title(rows, mask, size, rows["orientation"][mask][0]),
         notes=(
             *_unnamed(rows, mask), *_mixed(rows, mask), *restored_notes(rows, mask),
-            *impossible_date_notes(rows, mask),
+            *measured_again_notes(rows, mask), *impossible_date_notes(rows, mask),
         ),
     )  # fmt: skip
 
