@@ -118,6 +118,8 @@ def test_samples_of_a_known_psf_have_its_otf():
     np.testing.assert_allclose(psf.otf(u, u[::-1]), Gaussian(0.4).otf(u, u[::-1]), atol=1e-12)
     grid = psf.otf(u, u[:, None])
     np.testing.assert_allclose(grid, Gaussian(0.4).otf(u, u[:, None]), atol=1e-12)
+    transposed = psf.otf(u[:, None], u[:3])
+    np.testing.assert_allclose(transposed, Gaussian(0.4).otf(u[:, None], u[:3]), atol=1e-12)
     assert abs(psf.otf(20.3, 0.0)) == pytest.approx(abs(psf.otf(0.3, 0.0)))
 
 

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from acutance.arguments import require_floats, require_numbers, require_whole
 from acutance.curves.grid import Floats
@@ -66,7 +67,8 @@ class RasterPsf:
             down = np.exp(-2j * math.pi * np.multiply.outer(v.ravel(), rows))
             right = np.exp(-2j * math.pi * np.multiply.outer(cols, u.ravel()))
             product = down @ self.samples @ right
-            return np.asarray(product.reshape(np.broadcast_shapes(u.shape, v.shape)))
+            # Either frequency may be the one that runs along the first axis.
+            return np.asarray(product[_numbered(v), _numbered(u)])
         u, v = np.broadcast_arrays(u, v)
         down = np.exp(-2j * math.pi * np.multiply.outer(v.ravel(), rows))
         right = np.exp(-2j * math.pi * np.multiply.outer(u.ravel(), cols))
@@ -74,6 +76,11 @@ class RasterPsf:
 
     def _places(self, size: int) -> Floats:
         return np.asarray((np.arange(size) - 0.5 * (size - 1)) * self.step_px, np.float64)
+
+
+def _numbered(array: Floats) -> NDArray[np.intp]:
+    """The number of each element, in the shape of the array."""
+    return np.arange(array.size).reshape(array.shape)
 
 
 def numerical_psf(sensor: Sensor, *, subpixels: int = 20, trim_px: float = 5.0) -> RasterPsf:
