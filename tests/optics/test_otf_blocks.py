@@ -88,6 +88,12 @@ class TestEveryBlock:
         assert grid.shape == (5, 7)
         assert grid[3, 2] == pytest.approx(complex(block.otf(u[2:3], v[3])[0]), abs=1e-14)
 
+    def test_broadcasts_columns_against_rows(self, block):
+        u, v = np.linspace(-1, 1, 7), np.linspace(0, 1, 5)
+        transposed = block.otf(u[:, None], v)
+        assert transposed.shape == (7, 5)
+        np.testing.assert_allclose(transposed, block.otf(u, v[:, None]).T, atol=1e-14)
+
     def test_gives_one_number_for_one_frequency(self, block):
         found = block.otf(np.float64(0.3), np.float64(0.2))
         assert np.shape(found) == ()
@@ -356,6 +362,22 @@ def test_resampling_is_the_transform_of_its_kernel(kernel, a):
     # A spline reaches on beyond where it is cut.
     tolerance = 1e-7 if kernel == "spline" else 1e-12
     np.testing.assert_allclose(Resampling(kernel, a).otf(F, ZERO), expected.real, atol=tolerance)
+
+
+@pytest.mark.parametrize("kernel", ["cubic", "lanczos"])
+def test_resampling_passes_next_to_nothing_at_high_frequencies(kernel):
+    freq_cpp = np.array([5.5, 7.7, 9.2, 12.3, 12.7, 20.4, 64.5, 300.3])
+    reach = KERNEL_REACH_PX[kernel]
+    expected = transform(lambda x: interpolation_weight(kernel, x), freq_cpp, -reach, reach, 1200)
+    found = Resampling(kernel).otf(freq_cpp, np.zeros(8))
+    np.testing.assert_allclose(found, expected.real, atol=1e-6)
+
+
+def test_a_bare_detector_seen_through_lanczos_has_a_smooth_profile():
+    profile = Sensor([Detector(), Resampling("lanczos")]).profile(0.0)
+    places, step_px = np.linspace(-1.5, 1.5, 301), 0.01
+    slope = (profile.esf(places + step_px) - profile.esf(places - step_px)) / (2 * step_px)
+    np.testing.assert_allclose(profile.lsf(places), slope, atol=3e-4)
 
 
 @pytest.mark.parametrize("kernel", ["nearest", "bilinear", "cubic", "spline", "lanczos"])

@@ -31,7 +31,14 @@ KERNEL_REACH_PX: Final[dict[str, float]] = {
 _LOBES: Final = 3
 _POLE: Final = math.sqrt(3) - 2
 """By this the coefficients of a cubic spline through one pixel fall from pixel to pixel."""
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
+_NEAR_ZERO_CPP: Final = 0.1
+"""Below it the closed form of cubic convolution loses its digits."""
+_LANCZOS_END_CPP: Final = 12.5
+"""Beyond it less than 1e-6 passes Lanczos' kernel, and nothing here."""
+_QUADRATURE: Final = {
+    "cubic": np.polynomial.legendre.leggauss(16), "lanczos": np.polynomial.legendre.leggauss(40),
+}  # fmt: skip
+"""Nodes and weights over a pixel, by kernel: enough for the waves of its highest frequency."""
 
 
 def require_kernel(of: str, kernel: str) -> None:
@@ -140,7 +147,7 @@ def interpolation_transfer(kernel: Interpolation, freq_cpp: Floats, a: float = -
     if kernel == "spline":
         return spline_transfer(freq_cpp)
     if kernel == "lanczos":
-        return _by_quadrature(kernel, freq_cpp)
+        return _lanczos_transfer(freq_cpp)
     return _cubic_transfer(freq_cpp, a)
 
 
@@ -154,7 +161,7 @@ def spline_transfer(freq_cpp: Floats) -> Floats:
 
 def _cubic_transfer(f: Floats, a: float) -> Floats:
     """Of cubic convolution: closed form, quadrature near zero."""
-    small = np.abs(f) < 0.1
+    small = np.abs(f) < _NEAR_ZERO_CPP
     g = np.where(small, 1.0, f)
     keys = 3 * (np.sinc(g) ** 2 - np.sinc(2 * g))
     keys = keys + 2 * a * (3 * np.sinc(2 * g) ** 2 - 2 * np.sinc(2 * g) - np.sinc(4 * g))
@@ -162,10 +169,19 @@ def _cubic_transfer(f: Floats, a: float) -> Floats:
     return np.where(small, near_zero, keys / (math.pi * g) ** 2)
 
 
+def _lanczos_transfer(f: Floats) -> Floats:
+    """Of Lanczos' kernel, which has no closed form."""
+    found = np.zeros(np.shape(f))
+    passes = np.abs(f) <= _LANCZOS_END_CPP
+    found[passes] = _by_quadrature("lanczos", np.asarray(f)[passes])
+    return found
+
+
 def _by_quadrature(kernel: Interpolation, f: Floats, a: float = -0.5) -> Floats:
     """Of an even kernel that is smooth from pixel to pixel."""
+    nodes, weights = _QUADRATURE[kernel]
     pixels = np.arange(KERNEL_REACH_PX[kernel])[:, None]
-    x = (0.5 * (_NODES + 1) + pixels).ravel()
-    mass = np.tile(_WEIGHTS, pixels.size) * interpolation_weight(kernel, x, a)
+    x = (0.5 * (nodes + 1) + pixels).ravel()
+    mass = np.tile(weights, pixels.size) * interpolation_weight(kernel, x, a)
     waves = 2 * math.pi * np.asarray(f)
     return np.asarray(sum(m * np.cos(p * waves) for m, p in zip(mass, x, strict=True)))
