@@ -244,10 +244,11 @@ def test_defocus_of_nothing_is_diffraction_and_a_lot_reverses_contrast():
 
 @pytest.mark.parametrize(
     ("waves", "obscuration", "error"),
-    [(0.05, 0.0, 5e-5), (0.15, 0.3, 3e-4), (0.15, 0.6, 8e-4), (0.4, 0.9, 2e-3), (1.0, 0.99, 7e-3)],
+    [(0.05, 0.0, 2e-5), (0.15, 0.3, 2e-4), (0.15, 0.6, 4e-4), (0.4, 0.9, 2e-3), (1.0, 0.99, 5e-3)],
 )
 def test_aberrations_hold_defocus(waves, obscuration, error):
-    freq_cpp = np.linspace(0.0, 1.3, 53)
+    # So many that some lie at the kinks, where rims of pupil and obscuration touch.
+    freq_cpp = np.linspace(0.0, 1.3, 2001)
     found = Aberrations(1.2, obscuration, defocus_waves=waves).otf(0.6 * freq_cpp, 0.8 * freq_cpp)
     # A wavefront of W20 r^2 has W20 / (2 sqrt 3) root mean square, without its mean.
     expected = Defocus(2 * math.sqrt(3) * waves, 1.2, obscuration).otf(freq_cpp, 0 * freq_cpp)
