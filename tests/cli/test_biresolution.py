@@ -142,8 +142,24 @@ def test_uniform_images_are_exit_4(refused, folder):
     refused(("biresolution", path, plain), "no structure in common", code=4)
 
 
+def test_a_pair_is_seen_by_sensors_of_its_own_gsds(acutance, folder):
+    sensor = folder / "in-metres.toml"
+    blocks = '[[block]]\nkind = "Gaussian"\nsigma_m = 4.0\n\n[[block]]\nkind = "Detector"\n'
+    sensor.write_text(f"gsd_m = 0.5\n\n{blocks}")
+    words = ("simulate", "pair", "--sensor", sensor, "--high-sensor", sensor, "--gsd", 10)
+    files = ("--size", "40,40", "--out", folder / "own.tif", "--high", folder / "finer.tif")
+    assert acutance(*words, *files).exit_code == 0
+    truth = json.loads((folder / "own.truth.json").read_text())
+    for key, gsd_m in (("sensor", 10.0), ("high_sensor", 5.0)):
+        assert truth[key]["gsd_m"] == gsd_m
+        assert truth[key]["blocks"][0]["sigma_px"] == pytest.approx(4.0 / gsd_m)
+    across = truth["across"]
+    assert across["fwhm_m"] == pytest.approx(10.0 * across["fwhm_px"])
+
+
 def test_simulate_refuses(acutance, folder):
     words = ("simulate", "pair", "--out", folder / "a.tif")
     assert acutance(*words, "--high", folder / "a.tif").exit_code == 2
     assert acutance(*words, "--high", folder / "b.tif", "--shift", "1").exit_code == 2
-    assert acutance(*words, "--high", folder / "b.tif", "--ratio", "2.1").exit_code == 2
+    for ratio in ("2.1", "0", "-2"):
+        assert acutance(*words, "--high", folder / "b.tif", "--ratio", ratio).exit_code == 2

@@ -59,10 +59,9 @@ def pair(
     fine = check_output("--high", high, (".tif", ".tiff"), keep=inputs)
     rows, cols = parse_pair("--shift", shift, "rows and columns, as in 0.4,-1.2")
 
-    from acutance.raster import Gsd
-
-    Gsd.given(gsd)
-    system, reference = named_sensor(sensor), named_sensor(high_sensor)
+    system = named_sensor(sensor, gsd)
+    # A ratio that is none is refused with the images.
+    reference = named_sensor(high_sensor, gsd / ratio if ratio > 0 else None)
 
     import numpy as np
 
