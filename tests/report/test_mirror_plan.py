@@ -37,7 +37,7 @@ def test_a_bias_is_named_where_it_is_more_than_chance():
 
 def test_mirrors_too_large_for_a_field_are_told():
     plan = plan_mirrors(MirrorPlanOptions(optics.Sensor(SENSOR.blocks, gsd_m=70.0), draws=0))
-    assert "note: caps 62.4 m across" in mirror_plan_text(plan)
+    assert "note: caps 61.9 m across" in mirror_plan_text(plan)
     assert "note" not in mirror_plan_text(replace(plan, diameter_m=1.0))
 
 

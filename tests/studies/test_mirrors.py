@@ -41,14 +41,23 @@ def test_columns_use_every_phase_once(count):
     assert len({(round(r, 4), round(c, 4)) for r, c in layout.phases.tolist()}) == count
 
 
-def test_a_mirror_is_as_bright_as_asked():
+@pytest.mark.parametrize("view_deg", [0.0, 10.0, 35.0])
+def test_a_mirror_is_as_bright_as_asked(view_deg):
     """The intensity of a convex mirror against Lambertian ground that fills a pixel."""
-    options = MirrorPlanOptions(SENSOR, draws=0, level=0.6, ground=0.1, mirror=0.9)
+    options = MirrorPlanOptions(
+        SENSOR, draws=0, level=0.6, ground=0.1, mirror=0.9, view_zenith_deg=view_deg
+    )
     plan = plan_mirrors(options)
     intensity = 0.9 * plan.radius_m**2 / 4
-    ground = 0.7 * 0.7 * math.cos(math.radians(40.0)) / math.pi
+    seen_m2 = 0.7 * 0.7 * math.cos(math.radians(view_deg))
+    ground = seen_m2 * math.cos(math.radians(40.0)) / math.pi
     assert plan.peak_share * intensity / ground == pytest.approx(0.5)
-    assert plan.diameter_m == pytest.approx(2 * plan.radius_m * math.sin(math.radians(25.0)))
+    half = math.radians(0.5 * (40.0 + view_deg))
+    assert plan.diameter_m == pytest.approx(2 * plan.radius_m * math.sin(half))
+
+
+def test_a_brighter_mirror_is_larger():
+    plan = plan_mirrors(MirrorPlanOptions(SENSOR, draws=0, level=0.6, ground=0.1, mirror=0.9))
     brighter = plan_mirrors(MirrorPlanOptions(SENSOR, draws=0, level=1.1, ground=0.1, mirror=0.9))
     assert brighter.radius_m == pytest.approx(math.sqrt(2) * plan.radius_m)
 

@@ -2,11 +2,13 @@
 
 A convex mirror of radius of curvature R sends the sun's beam evenly into all directions: its
 radiant intensity is ``rho E R^2 / 4`` under the irradiance E (normal to the beam) and the
-reflectance rho. Lambertian ground of reflectance r and area A has ``r E cos(zenith) A / pi``. So a
-mirror is as bright as ground of reflectance ``pi rho R^2 / (4 A cos(zenith))`` that fills one pixel
-of area A; the air takes as much from both, and skylight is left out. The satellite sees the sun in
-the mirror where the mirror's normal halves the angle between both, so a cap that lies level must
-reach to half of the sum of both zenith angles. (Own derivation: the reports give no formula.)
+reflectance rho. Level Lambertian ground of reflectance r and area A has ``r E A cos(sun) cos(view)
+/ pi`` towards the satellite, by both zenith angles: seen from aside it is smaller, and a mirror is
+not. So a mirror is as bright as ground of reflectance ``pi rho R^2 / (4 A cos(sun) cos(view))``
+that fills one pixel, which covers the area A of it; the air takes as much from both, and skylight
+is left out. The satellite sees the sun in the mirror where the mirror's normal halves the angle
+between both, so a cap that lies level must reach to half of the sum of both zenith angles. (Own
+derivation: the reports give no formula.)
 """
 
 from __future__ import annotations
@@ -306,8 +308,9 @@ def plan_mirrors(options: MirrorPlanOptions, execution: Execution | None = None)
     )  # fmt: skip
     share = _peak_share(options.sensor, layout)
     light = (options.level - options.ground) / share
-    zenith = math.cos(math.radians(options.sun_zenith_deg))
-    radius = 2 * math.sqrt(light * gsd_m * along_m * zenith / (math.pi * options.mirror))
+    slant = math.cos(math.radians(options.sun_zenith_deg))
+    slant *= math.cos(math.radians(options.view_zenith_deg))
+    radius = 2 * math.sqrt(light * gsd_m * along_m * slant / (math.pi * options.mirror))
     half = math.radians(0.5 * (options.sun_zenith_deg + options.view_zenith_deg))
     records = _simulated(options, execution or Execution(workers=1))
     means = _by_name(records, np.mean)
