@@ -149,3 +149,5 @@ def test_what_does_not_fit_is_refused():
         tarp_rows((200, 200), 12)
     with pytest.raises(ModelError, match="side_px"):
         EdgeTarps("small", 5.0, 60.0, 6.0, 4.0, 200.0, 1200.0)
+    with pytest.raises(ModelError, match="dark is 1200 and bright 200: dark has to be lower; turn"):
+        EdgeTarps("exchanged", 60.0, 60.0, 6.0, 40.0, 1200.0, 200.0)

@@ -124,6 +124,8 @@ def test_site_is_a_scene_for_every_reference_system():
         ({"tile_px": 8.0}, "at least 16 px"),
         ({"turn_deg": 60.0}, "turned by 60"),
         ({"texture_std": 3.0}, "without rng"),
+        ({"dark": 1200.0, "bright": 200.0}, "dark is 1200 and bright 200: dark has to be lower"),
+        ({"dark": 700.0, "bright": 700.0}, "dark has to be lower"),
     ],
 )
 def test_impossible_boards_are_refused(arguments, words):

@@ -129,7 +129,7 @@ def checkerboard(
     centre : (row, col), optional
         Where the four tiles meet; the middle of the image unless given.
     dark, bright, ground : float, optional
-        Levels of the tiles and of the ground around them, in image units.
+        Levels of the tiles and of the ground around them, in image units; dark below bright.
     texture_std, texture_grain_px : float, optional
         Standard deviation of the ground and size of its grain; the board has none.
     strips : sequence of Strip, optional
@@ -149,7 +149,8 @@ def checkerboard(
     Raises
     ------
     ModelError
-        If the board is too small, leaves the image, or randomness is requested without `rng`.
+        If the board is too small, leaves the image, its dark tiles are not the darker ones, or
+        randomness is requested without `rng`.
     OptionError
         If an argument is of the wrong kind.
     """
@@ -162,6 +163,11 @@ def checkerboard(
     require_texture(texture_std)
     require_finite(dark=dark, bright=bright, ground=ground, texture_grain_px=texture_grain_px)
     require_all(Strip, "strips", strips)
+    if not dark < bright:
+        raise ModelError(
+            f"dark is {dark:g} and bright {bright:g}: dark has to be lower; the bright tiles are "
+            "the upper left and the lower right one"
+        )
     _require_room(shape, tile_px, turn_deg, centre)
     board = _tiles(centre, tile_px, turn_deg, dark - ground, bright - ground)
     image = ground + render_patches(sensor, board, shape)

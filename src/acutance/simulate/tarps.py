@@ -36,7 +36,14 @@ class EdgeTarps:
     side_px : float
         Side of a tarp.
     dark, bright : float
-        Their levels, in image units.
+        Their levels, in image units; dark below bright.
+
+    Raises
+    ------
+    ModelError
+        If a number makes no sense, or the dark tarp is not the darker one.
+    OptionError
+        If the name is no text.
     """
 
     name: str
@@ -52,6 +59,11 @@ class EdgeTarps:
         require(self, 8.0, side_px=self.side_px)
         require(self, -math.inf, row=self.row, col=self.col, normal_deg=self.normal_deg)
         require(self, -math.inf, dark=self.dark, bright=self.bright)
+        if not self.dark < self.bright:
+            raise ModelError(
+                f"EdgeTarps: dark is {self.dark:g} and bright {self.bright:g}: dark has to be "
+                "lower; turn the normal by 180 degrees to exchange the tarps"
+            )
 
 
 @dataclass(frozen=True)
