@@ -12,6 +12,7 @@ from acutance.errors import ModelError
 from acutance.optics import Detector, Exponential, Gaussian, Sensor, preset
 from acutance.simulate import (
     BarGroup,
+    BarsTruth,
     Star,
     add_star,
     bars,
@@ -57,6 +58,13 @@ def test_contrast_of_bars_is_that_of_many_bars():
         assert level(0.0) - level(group.period_px / 2) == pytest.approx(ctf, abs=1e-4)
     np.testing.assert_allclose(truth.mtf, [truth.response.mtf(f).value for f in truth.freq_cpp])
     assert image.shape[0] > 2 * 30
+
+
+@pytest.mark.parametrize("period_px", [40.0, 100.0, 400.0])
+def test_coarse_bars_have_their_whole_contrast(period_px):
+    group = BarGroup(0.0, 0.0, 0.0, period_px, 5, 20.0)
+    truth = BarsTruth(GENERIC, (group,), 200.0, 1200.0)
+    np.testing.assert_allclose(truth.ctf, 1.0, atol=1e-5)
 
 
 def test_bars_keep_inside_their_regions():

@@ -31,8 +31,8 @@ GAP_PX = 10.0
 MAX_BARS = 10_000
 """Of a group: far more than any target has."""
 
-HARMONICS = 25
-"""Odd harmonics of square bars in the contrast: up to 49 times their frequency."""
+HARMONICS, BAND_CPP = (25, 10_000), 8.0
+"""Odd harmonics of square bars in the contrast: all up to a frequency, 25 to 10 000 of them."""
 
 
 @dataclass(frozen=True)
@@ -96,10 +96,12 @@ class BarsTruth(ShortRepr):
         """Contrast of endless square bars, where it is read midway on bars and gaps, (n,).
 
         Coltman's series ``4/pi sum_k (-1)^k Re OTF((2k+1) f) / (2k+1)`` (JOSA 44, 468, 1954), with
-        the phase relative to the LSF's centroid.
+        the phase relative to the LSF's centroid, as far as any sensor passes its terms.
         """
-        odd = 2 * np.arange(HARMONICS) + 1
-        signs = (-1.0) ** np.arange(HARMONICS) / odd
+        count = math.ceil(0.5 * BAND_CPP / float(self.freq_cpp.min()))
+        number = np.arange(min(max(count, HARMONICS[0]), HARMONICS[1]))
+        odd = 2 * number + 1
+        signs = (-1.0) ** number / odd
         return np.asarray(4 / math.pi * self._otf(np.outer(self.freq_cpp, odd)).real @ signs)
 
     def _otf(self, freq_cpp: Floats) -> Transfer:
