@@ -92,7 +92,7 @@ def measure_year(folder: Path, seed: int) -> SimulatedYear:
 
 
 def _sensor_on(when: datetime) -> Sensor:
-    """A sensor that loses focus as the square root of time, until it is refocused."""
+    """A sensor whose blur grows evenly with time, until it is refocused."""
     from acutance import optics
 
     begin = REFOCUS if when >= REFOCUS else BEGIN
