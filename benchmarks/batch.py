@@ -141,7 +141,7 @@ def server_rows(folder: Path, rng: Any) -> list[list[str]]:
     if server is None:
         return [["PostgreSQL", "not installed"]]
     pattern, targets = make_campaign(folder, KILL_IMAGES, rng)
-    place = server.new_database("campaign")
+    place = server.empty_database("campaign")
     stops: list[float] = []
     try:
         line = words([pattern], targets, place, 1)

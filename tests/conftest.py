@@ -57,13 +57,27 @@ class PostgresServer:
         """Make the folder of the data."""
         self._call("initdb", "-N", "-D", self._data, "-A", "trust", "-U", "tester", "-E", "UTF8")
 
-    def new_database(self, name: str) -> str:
-        """The URL of an empty database."""
+    def empty_database(self, name: str) -> str:
+        """The URL of an empty database: made once, and emptied for every test after the first.
+
+        A database takes ten times as long to be made as its tables take to be dropped.
+        """
         engine = create_engine(self.url("postgres"), isolation_level="AUTOCOMMIT")
         with engine.connect() as connection:
-            connection.execute(text(f'DROP DATABASE IF EXISTS "{name}" WITH (FORCE)'))
-            connection.execute(text(f'CREATE DATABASE "{name}"'))
+            named = {"name": name}
+            connection.execute(
+                text("SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE datname = :name"),
+                named,
+            )
+            is_there = text("SELECT 1 FROM pg_database WHERE datname = :name")
+            if not connection.execute(is_there, named).first():
+                connection.execute(text(f'CREATE DATABASE "{name}"'))
         engine.dispose()
+        own = create_engine(self.url(name), isolation_level="AUTOCOMMIT")
+        with own.connect() as connection:
+            connection.execute(text("DROP SCHEMA public CASCADE"))
+            connection.execute(text("CREATE SCHEMA public"))
+        own.dispose()
         return self.url(name)
 
     def url(self, database: str) -> str:
@@ -121,7 +135,7 @@ def postgres_server() -> Iterator[PostgresServer]:
 @pytest.fixture
 def postgres_url(postgres_server: PostgresServer) -> str:
     """An empty database."""
-    return postgres_server.new_database("test")
+    return postgres_server.empty_database("test")
 
 
 @pytest.fixture(scope="session")
