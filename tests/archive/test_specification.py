@@ -18,7 +18,7 @@ from acutance.archive.trends import Series
 from acutance.archive.trends.fit_trend import fit_trend
 from acutance.archive.trends.series import date_of
 
-DRAWS = 240
+DRAWS = 120
 
 
 def series(
@@ -56,7 +56,10 @@ def test_probabilities_are_true() -> None:
         if found.word != "cannot be told yet":
             said += 1
             right += (found.word == "met") == (limit <= 0.1)
-    assert 0.84 < np.sqrt(np.mean(squares)) < 1.08
+    scatter = np.sqrt(np.mean(squares))
+    assert 0.84 < scatter < 1.08
+    assert scatter / 0.8 > 1.08
+    assert scatter / 1.25 < 0.84
     assert said > DRAWS / 4
     assert right / said > 0.95
 

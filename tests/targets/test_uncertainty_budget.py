@@ -3,6 +3,7 @@
 import json
 import math
 import pickle
+from functools import cache
 
 import numpy as np
 import pytest
@@ -36,12 +37,14 @@ def pulse(**arguments):
     return ac.measure_pulse(image, width_px=3, **arguments)
 
 
+@cache
 def star():
     rng = np.random.default_rng(6)
     image, _ = ac.simulate.star(SENSOR, snr=80, shape=(96, 96), radius_px=40, rng=rng)
     return ac.measure_star(image)
 
 
+@cache
 def combined():
     return ac.combine([edge(), edge(orientation="along")])
 

@@ -13,20 +13,24 @@ from acutance.archive.trends import Event, Series, date_of, decimal_year, fit_tr
 from acutance.archive.trends.words import trend_text
 
 Make = Callable[..., Series]
-DRAWS = 250
 
 
-@pytest.mark.parametrize("images", [7, 14])
-def test_deviations_of_rate_and_level_are_true_ones(series_of: Make, images: int) -> None:
+@pytest.mark.parametrize(("images", "draws"), [(7, 250), (14, 150)])
+def test_deviations_of_rate_and_level_are_true_ones(
+    series_of: Make, images: int, draws: int
+) -> None:
     """A deviation 0.8 or 1.25 times the true one leaves these bounds."""
     rates, levels = [], []
-    for seed in range(DRAWS):
+    for seed in range(draws):
         trend = fit_trend(series_of(seed, images=images, drift=0.02, scatter=0.03))
         rate, level = trend.rate_per_year, trend.mean(2022.5, season=False).estimate()
         rates.append((rate.value - 0.16 * 0.02) / rate.std)
         levels.append((level.value - 0.16) / level.std)
     for found in (rates, levels):
         assert 0.84 < np.std(found) < 1.08
+        if images > 7:
+            assert np.std(found) / 0.8 > 1.08
+            assert np.std(found) / 1.25 < 0.84
     assert abs(np.mean(levels)) < 0.2
 
 

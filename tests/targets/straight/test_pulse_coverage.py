@@ -16,7 +16,7 @@ def errors():
     """Errors in standard deviations, (draws, len(NAMES)), pooled over systems and angles."""
     rng = np.random.default_rng(5)
     found = []
-    for draw in range(40 * len(SYSTEMS)):
+    for draw in range(20 * len(SYSTEMS)):
         width_px = rng.uniform(2.6, 3.7)
         image, truth = ac.simulate.pulse(
             list(SYSTEMS.values())[draw % len(SYSTEMS)],
