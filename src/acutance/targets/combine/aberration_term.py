@@ -71,7 +71,8 @@ def _linear_difference(p: Floats, plane: Plane) -> tuple[Floats, Floats, Floats,
     """Weights of the nodes, the angles 2 pi D of defocus and astigmatism, and the products s x and
     s y that D is made of, (n, m) each."""
     s, x, y, weights = _common_part(p, plane)
-    by_x, by_y = s * x, s * y
+    where = plane.rings[1]
+    by_x, by_y, weights = (s * x)[where], (s * y)[where], weights[where]
     amount_x, amount_y = _tilts(p, plane)
     angle = 2 * math.pi * (amount_x[:, None] * by_x + amount_y[:, None] * by_y)
     return weights, angle, by_x, by_y
@@ -118,15 +119,19 @@ class _Difference:
     def of(cls, p: Floats, plane: Plane) -> _Difference:
         """Of the parameters of `ABERRATED`, at places of the plane."""
         s, x, y, weights = _common_part(p, plane)
+        where = plane.rings[1]
         xx, yy, ss = x * x, y * y, s * s
         odd = np.stack([s * x, s * y, 24 * math.sqrt(5) * s * x * (2 * (xx + yy + ss) - 1)])
         _, obscuration = aperture(p[0], p[1])
         coma_along = 6 * math.sqrt(8) * s * (3 * xx + yy + ss - 1 - obscuration**2)
         even = np.stack([coma_along, 12 * math.sqrt(8) * s * x * y])
+        odd, even, weights = odd[:, where], even[:, where], weights[where]
         by_x, by_y = _tilts(p, plane)
         angle = 2 * math.pi * np.einsum("kn,knm->nm", [by_x, by_y, np.full_like(by_x, p[7])], odd)
         coma = np.einsum("kn,knm->nm", [p[5:7] @ plane.along, p[5:7] @ _across(plane.along)], even)
-        waves = weights * np.exp(2j * math.pi * coma)
+        turn = 2 * math.pi * coma
+        waves = np.empty(turn.shape, complex)
+        waves.real, waves.imag = weights * np.cos(turn), weights * np.sin(turn)
         return cls(plane, odd, even, angle, waves)
 
     @property
@@ -147,9 +152,10 @@ class _Difference:
 
 
 def _common_part(p: Floats, plane: Plane) -> tuple[Floats, Floats, Floats, Floats]:
-    """Half the shift of the pupil, (n, 1), and nodes x and y and weights, (n, m) each."""
+    """Half the shift of the pupil, (r, 1), and nodes x and y and weights, (r, m) each: once for
+    every distance from zero frequency."""
     cutoff, obscuration = aperture(p[0], p[1])
-    shift = np.minimum(plane.waves / (2 * math.pi * cutoff), 1.0)
+    shift = np.minimum(plane.rings[0] / cutoff, 1.0)
     return shift[:, None], *overlap_nodes(shift, float(obscuration))
 
 
