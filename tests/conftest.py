@@ -65,10 +65,8 @@ class PostgresServer:
         engine = create_engine(self.url("postgres"), isolation_level="AUTOCOMMIT")
         with engine.connect() as connection:
             named = {"name": name}
-            connection.execute(
-                text("SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE datname = :name"),
-                named,
-            )
+            end = "SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE datname = :name"
+            connection.execute(text(end), named)
             is_there = text("SELECT 1 FROM pg_database WHERE datname = :name")
             if not connection.execute(is_there, named).first():
                 connection.execute(text(f'CREATE DATABASE "{name}"'))

@@ -11,7 +11,7 @@ Zernike polynomials of `acutance.optics.Aberrations` give::
 
 of defocus d, astigmatism a, spherical aberration b and coma c, whose components are those about
 axes turned to the shift; what moves the image only is left out, by the radius e of the obscuration.
-The mean is a quadrature (`acutance.targets.combine.pupil_overlap`).
+The mean is a quadrature (`acutance.targets.combine.pupil_overlap`, `pupil_means`).
 
 Most telescopes that are out of alignment have one aberration that stands out. Where edges in two or
 three directions leave open what is between them, a form with all six coefficients pays for those
@@ -31,6 +31,7 @@ from numpy.typing import NDArray
 from acutance.curves.grid import Floats
 from acutance.optics.aperture import aperture_transfer
 from acutance.targets.combine.plane import Plane
+from acutance.targets.combine.pupil_means import mean_cosines, mean_slopes, mean_waves
 from acutance.targets.combine.pupil_overlap import overlap_nodes
 from acutance.targets.combine.term import Term, Transfer, aperture, columns, one_by_one
 
@@ -56,26 +57,21 @@ def _slopes(p: Floats, plane: Plane) -> Complexes:
 
 
 def _astigmatic(p: Floats, plane: Plane) -> Floats:
-    weights, angle, *_ = _linear_difference(p, plane)
-    return np.asarray(diffraction(p[:2], plane) * np.sum(weights * np.cos(angle), axis=1))
+    return np.asarray(diffraction(p[:2], plane) * _linear_difference(p, plane)[0])
 
 
 def _astigmatic_slopes(p: Floats, plane: Plane) -> Floats:
-    bare, (weights, angle, by_x, by_y) = diffraction(p[:2], plane), _linear_difference(p, plane)
-    sines = -bare[:, None] * weights * np.sin(angle)
-    by_waves = _by_waves(np.sum(sines * by_x, axis=1), np.sum(sines * by_y, axis=1), plane)
+    _, by_x, by_y = diffraction(p[:2], plane) * _linear_difference(p, plane)
+    by_waves = _by_waves(by_x, by_y, plane)
     return np.concatenate([_slopes_by_pupil(_astigmatic, p, plane), 2 * math.pi * by_waves])
 
 
-def _linear_difference(p: Floats, plane: Plane) -> tuple[Floats, Floats, Floats, Floats]:
-    """Weights of the nodes, the angles 2 pi D of defocus and astigmatism, and the products s x and
-    s y that D is made of, (n, m) each."""
+def _linear_difference(p: Floats, plane: Plane) -> Floats:
+    """Mean of the cosine of 2 pi D, of defocus and astigmatism alone, and its derivatives by the
+    angles that these give s x and s y, (3, n)."""
     s, x, y, weights = _common_part(p, plane)
-    where = plane.rings[1]
-    by_x, by_y, weights = (s * x)[where], (s * y)[where], weights[where]
-    amount_x, amount_y = _tilts(p, plane)
-    angle = 2 * math.pi * (amount_x[:, None] * by_x + amount_y[:, None] * by_y)
-    return weights, angle, by_x, by_y
+    amounts = 2 * math.pi * np.stack(_tilts(p, plane))
+    return mean_cosines(plane.rings[1], weights, np.stack([s * x, s * y]), amounts)
 
 
 def _slopes_by_pupil(otf: Transfer, p: Floats, plane: Plane) -> NDArray[Any]:
@@ -101,54 +97,53 @@ class _Difference:
     Attributes
     ----------
     plane : Plane
-    odd, even : (3, n, m) and (2, n, m) array
+    weights : (r, m) array
+        Of the nodes, for every distance from zero frequency.
+    odd, even : (3, r, m) and (2, r, m) array
         What D is made of: x and y, spherical aberration; coma along the shift and across it.
-    angle : (n, m) array
-        2 pi times what is odd.
-    waves : (n, m) complex array
-        ``exp(2 pi i even)`` times the weights of the nodes.
+    by_odd, by_even : (3, n) and (2, n) array
+        How much of each there is, times 2 pi.
     """
 
     plane: Plane
+    weights: Floats
     odd: Floats
     even: Floats
-    angle: Floats
-    waves: Complexes
+    by_odd: Floats
+    by_even: Floats
 
     @classmethod
     def of(cls, p: Floats, plane: Plane) -> _Difference:
         """Of the parameters of `ABERRATED`, at places of the plane."""
         s, x, y, weights = _common_part(p, plane)
-        where = plane.rings[1]
         xx, yy, ss = x * x, y * y, s * s
         odd = np.stack([s * x, s * y, 24 * math.sqrt(5) * s * x * (2 * (xx + yy + ss) - 1)])
         _, obscuration = aperture(p[0], p[1])
         coma_along = 6 * math.sqrt(8) * s * (3 * xx + yy + ss - 1 - obscuration**2)
         even = np.stack([coma_along, 12 * math.sqrt(8) * s * x * y])
-        odd, even, weights = odd[:, where], even[:, where], weights[where]
         by_x, by_y = _tilts(p, plane)
-        angle = 2 * math.pi * np.einsum("kn,knm->nm", [by_x, by_y, np.full_like(by_x, p[7])], odd)
-        coma = np.einsum("kn,knm->nm", [p[5:7] @ plane.along, p[5:7] @ _across(plane.along)], even)
-        turn = 2 * math.pi * coma
-        waves = np.empty(turn.shape, complex)
-        waves.real, waves.imag = weights * np.cos(turn), weights * np.sin(turn)
-        return cls(plane, odd, even, angle, waves)
+        by_odd = 2 * math.pi * np.stack([by_x, by_y, np.full_like(by_x, p[7])])
+        by_even = 2 * math.pi * np.stack([p[5:7] @ plane.along, p[5:7] @ _across(plane.along)])
+        return cls(plane, weights, odd, even, by_odd, by_even)
 
     @property
     def mean(self) -> Complexes:
         """Mean of ``exp(2 pi i D)``, (n,)."""
-        return np.asarray(np.sum(self.waves * np.cos(self.angle), axis=1))
+        return mean_waves(*self._parts)
 
     @property
     def slopes(self) -> Complexes:
         """Its derivatives by the six coefficients, (6, n)."""
-        sines, cosines = -self.waves * np.sin(self.angle), 1j * self.waves * np.cos(self.angle)
-        by_x, by_y, spherical = np.einsum("nm,knm->kn", sines, self.odd)
-        coma_along, coma_across = np.einsum("nm,knm->kn", cosines, self.even)
+        by_x, by_y, spherical, coma_along, coma_across = mean_slopes(*self._parts)
         along = self.plane.along
         coma = along * coma_along + _across(along) * coma_across
         by_waves = _by_waves(by_x, by_y, self.plane)
         return np.asarray(2 * math.pi * np.vstack([by_waves, coma, spherical]), complex)
+
+    @property
+    def _parts(self) -> tuple[NDArray[np.intp], Floats, Floats, Floats, Floats, Floats]:
+        ring = self.plane.rings[1]
+        return ring, self.weights, self.odd, self.even, self.by_odd, self.by_even
 
 
 def _common_part(p: Floats, plane: Plane) -> tuple[Floats, Floats, Floats, Floats]:
