@@ -7,7 +7,7 @@ import pytest
 from bare_ground import bare_ground
 
 import acutance as ac
-from acutance import simulate
+from acutance import optics, simulate
 from acutance.curves import Otf2d
 from acutance.scan.scene_likelihood import likelihood_of_slices
 from acutance.scan.stated_objects import OtfBehindObjects
@@ -18,6 +18,7 @@ from acutance.targets.slices import OtfSlices
 SENSOR = simulate.reference_systems()["gaussian"]
 U_CPP, V_CPP = np.array([0.5, 0.0, 0.25]), np.array([0.0, 0.5, 0.25])
 CERTAIN = (ac.Estimate(0.0), ac.Estimate(0.0))
+FEW_FORMS = ac.CombineOptions(forms=(("gaussian",), ("gaussian", "halo")))
 
 
 @pytest.fixture(scope="module")
@@ -76,3 +77,29 @@ def test_the_same_of_objects_whose_softness_is_stated(scene):
     assert np.sum(said.residual(slices.otf) ** 2) == pytest.approx(
         np.sum(behind.residual(plain.otf) ** 2), abs=0.5
     )
+
+
+def with_an_edge(scene, sensor):
+    """A scan and an edge, 30 degrees off the grid."""
+    image, _ = simulate.edge(sensor, angle_deg=30, snr=60, rng=np.random.default_rng(2))
+    return ac.combine([scene, ac.measure_edge(image)], options=FEW_FORMS)
+
+
+def test_chi_square_expects_of_a_scene_what_it_was_not_fitted_to(scene):
+    both = with_an_edge(scene, SENSOR)
+    values = [one.likelihood.values.size for one in (scene.slices, both.details.data.curves[1])]
+    # Of the scene's own values forms follow a few, and the combination these.
+    assert both.plain_sensor.expected < values[1] < values[0]
+    assert 0.3 * both.plain_sensor.expected < both.plain_sensor.value
+    assert both.plain_sensor.p_value > 0.1
+    assert both.chi_square.p_value > 0.1
+    assert both.birge_ratio == 1
+
+
+def test_an_edge_of_another_sensor_is_told_from_that_of_a_scene(scene):
+    other = ac.Sensor([optics.Gaussian(0.45), optics.Detector(1.0)])
+    both = with_an_edge(scene, other)
+    assert both.plain_sensor.p_value < 1e-4
+    assert both.chi_square.p_value < 1e-6
+    failed = {check.name for check in both.failed_checks}
+    assert {"agreement", "plain_sensor"} <= failed

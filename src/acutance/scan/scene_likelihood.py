@@ -6,7 +6,8 @@ the edges alone say is kept beside the slices (`acutance.targets.otf_likelihood`
 
 Edges show the transfer function along the mean directions of their bins, and as their objects and
 the field blur it. A change of the slices is carried there by the smoothest waves over the
-directions; about the sensor that was found nothing is.
+directions; about the sensor that was found nothing is. So the likelihood is largest there: what the
+forms do not follow of the edges is in none of its values (`acutance.scan.form_agreement` asks it).
 """
 
 from __future__ import annotations

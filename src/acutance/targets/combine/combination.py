@@ -144,7 +144,10 @@ def _require_two(inputs: Sequence[MeasuredInput]) -> None:
 def _curve(one: MeasuredInput) -> OtfSamples:
     slices = one.slices
     u, v = slices.places
-    return OtfSamples(one.name, u, v, slices.otf, slices.factor, slices.likelihood)
+    return OtfSamples(
+        one.name, u, v, slices.otf, slices.factor, slices.likelihood,
+        is_about_curve=one.kind == "scene",
+    )  # fmt: skip
 
 
 def _part(one: MeasuredInput, chi_square: ChiSquare, otf: Otf2d) -> CombinedPart:

@@ -55,6 +55,9 @@ class OtfSamples:
         Factor of the covariance: the error is ``factor @ z``, z standard normal and real.
     likelihood : OtfLikelihood, optional
         What the pixels alone say, where that is known.
+    is_about_curve : bool, optional
+        Whether the likelihood is largest at the curve, which forms of sensors were fitted to: what
+        these do not follow of the pixels is in none of its values.
     """
 
     name: str
@@ -63,6 +66,7 @@ class OtfSamples:
     otf: Complexes
     factor: Complexes
     likelihood: OtfLikelihood | None = None
+    is_about_curve: bool = False
 
     def centred(self) -> OtfSamples:
         """The same about the centroid: the slope of the phase at low frequencies."""
@@ -98,12 +102,15 @@ class OtfSamples:
 
     @cached_property
     def whitened_factor(self) -> Floats:
-        """Factor of the covariance of the whitened errors, (size, size).
+        """Factor of the covariance of the whitened errors, (size, size or k).
 
-        Of a likelihood they have unit variance. Of a posterior it is the symmetric factor of the
+        Of a likelihood they have unit variance; of one about the curve they are those of the curve,
+        in the few directions that forms follow. Of a posterior it is the symmetric factor of the
         errors, whitened: every column belongs to a frequency, and the smallest errors are below 1.
         """
         if self.likelihood is not None:
+            if self.is_about_curve:
+                return np.asarray(self.whitening @ stacked(self.factor))
             return np.eye(self.size)
         wide = stacked(self.factor)
         value, vector = np.linalg.eigh(wide @ wide.T)
