@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.ndimage import gaussian_filter
 
 import acutance as ac
 from acutance.numerics.gaussian_pixel_2d import GaussianPixel2d
@@ -182,6 +183,26 @@ def test_shot_noise_far_above_that_of_the_background_is_found():
         for name in ("across", "along"):
             seen = getattr(found, name).mtf_nyquist
             assert abs(seen.value - truth.response(name).mtf_nyquist.value) < 3 * seen.std
+
+
+@pytest.mark.parametrize(("side", "draw"), [(2, 1), (4, 0)])
+def test_shot_noise_beside_a_background_that_correlates_is_found(side, draw):
+    """Texture of the ground is no reason to take what grows with the light for less of it.
+
+    Of four sources, the fit took up much of their few bright pixels, not all.
+    """
+    rng = np.random.default_rng([17, draw])
+    grid = 20.0 * np.stack(np.divmod(np.arange(side**2), side), axis=1) + 16.0
+    places = grid + rng.uniform(-0.5, 0.5, grid.shape)
+    shape = (20 * side + 13, 20 * side + 13)
+    image, _ = ac.simulate.points(
+        SENSOR, positions=places, shape=shape, peak=2000.0, background=0.0,
+        noise=ac.simulate.Noise(read=1e-6, shot_gain=4.0), rng=rng,
+    )  # fmt: skip
+    texture = gaussian_filter(rng.standard_normal(shape), 0.6, mode="wrap")
+    found = ac.measure_points(image + 20 * texture / texture.std(), positions=places)
+    assert found.details.fit.correlation.inflation > 2.5
+    assert 1.2 < found.noise_gain < 8.0
 
 
 def test_a_fit_that_does_not_settle_has_the_noise_it_was_posed_with(monkeypatch):

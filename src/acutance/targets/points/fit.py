@@ -297,7 +297,8 @@ def _growth(
     `light` is that of the state in which the problem was posed, `state` what its solution leaves.
     """
     if noise.growth == 0:
-        leverage = _leverage(blocks, posterior, state.light)
+        inflated = posterior.variance * noise.correlation.inflation
+        leverage = _leverage(blocks, posterior.factor / math.sqrt(inflated), state.light)
         if not noise_grows(stamps, state.residual, state.light, leverage, prior.noise_floor):
             return 0.0
     dark = state.light < _DARK * float(state.light.max())
@@ -313,15 +314,18 @@ def _growth(
         weight = replace(noise, growth=growth).weight(light)
         return determined.eliminated(weight), float(np.log(weight).sum())
 
-    return likeliest_growth(solved, inflated, float(light.max()))
+    return likeliest_growth(solved, variance, float(light.max()))
 
 
-def _leverage(blocks: Blocks, posterior: Posterior, light: Floats) -> Floats:
-    """How much of its own noise the fit took up in every pixel; of dark ones, the sources' part."""
+def _leverage(blocks: Blocks, factor: Floats, light: Floats) -> Floats:
+    """How much of its own noise the fit took up in every pixel; of dark ones, the sources' part.
+
+    `factor` is that of the covariance of the shared unknowns at a noise of one.
+    """
     leverage = blocks.leverage.copy()
     bright = np.flatnonzero(light > _DARK * light.max())
-    shared = blocks.shared[bright] @ posterior.factor
-    leverage[bright] += np.einsum("ij,ij->i", shared, shared) / posterior.variance
+    shared = blocks.shared[bright] @ factor
+    leverage[bright] += np.einsum("ij,ij->i", shared, shared)
     return np.asarray(np.minimum(leverage, 1.0))
 
 
