@@ -139,6 +139,19 @@ def test_feet_taken_for_metres_are_told(sigma_px, width_px, snr, seed):
     assert float(freely[1]) == pytest.approx(width_px, abs=0.05)
 
 
+def test_a_held_width_is_as_many_deviations_off_as_a_stated_one():
+    """What the halo of the LSF adds to the deviation of a free width belongs to either."""
+    image, _ = simulated(system=SYSTEMS["halo"], snr=400.0)
+    free, held = (
+        next(check for check in found.checks if check.name == "width_sigmas")
+        for found in (
+            ac.measure_pulse(image, width_px=3.03, fit_width=fit_width)
+            for fit_width in (True, False)
+        )
+    )
+    assert held.value == pytest.approx(free.value, rel=0.1)
+
+
 def test_a_held_width_that_nothing_confirms_does_not_pass():
     assert not width_check({}, 1.2, None, is_held=True).passed
 

@@ -215,7 +215,8 @@ def _free_width(region: RegionPixels, held_px: float, *, robust: bool) -> Estima
     """The width that the joint fit finds where another was held; None where it finds none.
 
     Fitted from the width that is found when none is stated, and from the held one: about one with
-    half the width the blur is wide, and stays so. Where several fit the nearest to it is told.
+    half the width the blur is wide, and stays so. The former is told unless it is too narrow to be
+    known, as next to a wrong width there may be a minimum of its own; of narrow ones the nearest.
     """
     starts = (None, held_px)
     found = [one for one in (_fitted_width(region, px, robust) for px in starts) if one is not None]
@@ -227,13 +228,13 @@ def _fitted_width(region: RegionPixels, first_px: float | None, robust: bool) ->
     """The width that the joint fit finds from a first guess, near the end begun once more."""
     try:
         trimmed, _ = find_pulse(region.pixels, first_px)
-        width = fit_pulse(trimmed, robust=robust).pulse_width
-        if first_px is not None and _is_far(width.value, first_px):
-            again, _ = find_pulse(region.pixels, width.value)
-            width = fit_pulse(again, robust=robust).pulse_width
+        fit = fit_pulse(trimmed, robust=robust)
+        if first_px is not None and _is_far(fit.pulse_width.value, first_px):
+            again, _ = find_pulse(region.pixels, fit.pulse_width.value)
+            fit = fit_pulse(again, robust=robust)
     except TargetError:
         return None
-    return width
+    return _with_halo(fit.pulse_width, with_uncertain_halo(fit.response))
 
 
 def require_pulse_method(
