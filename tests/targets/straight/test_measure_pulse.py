@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+from scipy.ndimage import gaussian_filter
 
 import acutance as ac
 from acutance.simulate import pulse, reference_systems
@@ -137,6 +138,17 @@ def test_feet_taken_for_metres_are_told(sigma_px, width_px, snr, seed):
     width = next(check for check in m.checks if check.name == "width_sigmas")
     freely = re.search(r"fitted freely it is (\d\.\d+)", width.message)
     assert float(freely[1]) == pytest.approx(width_px, abs=0.05)
+
+
+@pytest.mark.parametrize("lower", [0.0, 0.15])
+def test_grain_that_the_ground_has_as_well_is_no_seam_of_the_pulse(lower):
+    """Blocks of noise that correlates differ more than those of white noise."""
+    image, _ = simulated(width_px=5.0, shape=(50, 54), snr=None)
+    ground = image.min()
+    image[25:] -= lower * (image[25:] - ground)
+    grain = gaussian_filter(np.random.default_rng(3).standard_normal(image.shape), 0.6)
+    noisy = image + (image.max() - ground) / 15 * grain / grain.std()
+    assert ("uniformity_target" in failed(ac.measure_pulse(noisy))) == (lower > 0)
 
 
 def test_a_held_width_is_as_many_deviations_off_as_a_stated_one():

@@ -277,10 +277,14 @@ def blocks_of(rows: NDArray[np.intp], cols: NDArray[np.intp]) -> NDArray[np.intp
 
 
 @compiled
-def blotches(block: NDArray[np.intp], field: Floats, outwards: Floats, from_px: float) -> float:
+def blotches(
+    block: NDArray[np.intp], field: Floats, outwards: Floats, from_px: float, smoothness: float
+) -> float:
     """Standard deviation of means over blocks of pixels, without the share of noise.
 
-    Of the pixels that lie further outwards than `from_px`.
+    Of the pixels that lie further outwards than `from_px`. Means over n pixels of noise whose power
+    is `smoothness` times that of white noise have that many n-ths of its variance, and the pixels
+    of a block scatter about their mean by the rest.
     """
     size = np.max(block) + 1
     count, total, power = np.zeros(size), np.zeros(size), np.zeros(size)
@@ -301,8 +305,9 @@ def blotches(block: NDArray[np.intp], field: Floats, outwards: Floats, from_px: 
     if count.size < 3:
         return 0.0
     mean = total / count
-    noise = np.sum(power - count * mean * mean) / max(np.sum(count - 1), 1)
-    excess = np.var(mean) * mean.size / (mean.size - 1) - noise * np.mean(1 / count)
+    shared = np.minimum(smoothness, 0.5 * count)
+    noise = np.sum(power - count * mean * mean) / max(np.sum(count - shared), 1)
+    excess = np.var(mean) * mean.size / (mean.size - 1) - noise * np.mean(shared / count)
     return math.sqrt(max(excess, 0.0))
 
 

@@ -68,7 +68,7 @@ a trail and all other sensors, which white noise does not refute."""
 
 def uniformity(data: CheckData, limits: Limits, side: str, outwards: Floats) -> Check:
     """Structure of one plateau: variation of means over 4 x 4 pixels, beyond noise."""
-    variation = blotches(data.blocks, data.value, outwards, data.far_px)
+    variation = blotches(data.blocks, data.value, outwards, data.far_px, 1.0)
     found = (
         f"the plateau {PLACES[side]} varies by {100 * variation:.1f} % of the contrast from place "
         "to place"
@@ -77,8 +77,13 @@ def uniformity(data: CheckData, limits: Limits, side: str, outwards: Floats) -> 
 
 
 def target_uniformity(data: CheckData, limits: Limits) -> Check:
-    """Structure of a pulse and of its two sides, from the residuals there."""
-    variation = blotches(data.blocks, data.residual, -data.outside, -0.5 * data.fwhm_px)
+    """Structure of a pulse and of its two sides, from the residuals there.
+
+    Grain that the plateaus have as well is noise, which the intervals allow for.
+    """
+    variation = blotches(
+        data.blocks, data.residual, -data.outside, -0.5 * data.fwhm_px, data.smoothness
+    )
     found = f"the pulse varies by {100 * variation:.1f} % of its height from place to place"
     return answer("uniformity_target", bounded_ratio(1.0, variation), found, limits)
 
