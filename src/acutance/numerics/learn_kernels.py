@@ -33,7 +33,8 @@ _HIGHEST_CPP: Final = 1.2
 _STEP_CPP: Final = 0.05
 """Highest frequency of the nodes and their distance: targets show nothing finer."""
 _NOISE: Final = 2e-4
-"""Deviation of a node's OTF, as the pixels of a star determine it."""
+"""Deviation of the OTF in the mean over all nodes; that of a single one is .009. With so little at
+every one, stars of SNR 100 behind 20 sensors are measured about as well."""
 _MEAN_STD: Final = 100.0
 _STATE_STD: Final = 0.05
 _TAP_STD: Final = 0.02
