@@ -11,10 +11,12 @@ from acutance.studies import (
     Execution,
     GroundNoiseOptions,
     SnrOptions,
+    ground_noise,
     run_study,
     study_ground_noise,
     study_snr,
 )
+from acutance.studies.table import Table
 
 ALONE = Execution(seed=3, workers=1)
 
@@ -162,3 +164,12 @@ def test_the_axis_of_the_snr_has_several_ticks(noise_dn):
     for axes in figure.axes:
         low, high = axes.get_xlim()
         assert 3 <= sum(low <= tick <= high for tick in axes.get_xticks()) <= 12
+
+
+def test_the_bias_on_uneven_ground_is_known_by_the_images_that_were_measured():
+    """Of eight images four were refused: the others tell of the mean."""
+    options = GroundNoiseOptions(levels_dn=((1100.0, 400.0),), runs=8)
+    numbers = {"mean": 0.25, "bias_percent": -6.0, "std_percent": 4.0, "refused": 4}
+    table = Table.of_rows([{"snr": 50.0} | {f"ours_{name}": one for name, one in numbers.items()}])
+    (bias,) = ground_noise._bias(options, "ours", table)
+    assert "-6.0 ± 2.0 %" in bias.text

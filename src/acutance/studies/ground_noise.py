@@ -184,7 +184,9 @@ def _bias(options: GroundNoiseOptions, name: Estimator, table: Table) -> tuple[F
     bias = float(table[f"{name}_bias_percent"][highest])
     if math.isnan(bias):
         return ()
-    known = float(table[f"{name}_std_percent"][highest]) / math.sqrt(options.runs)
+    # Of images that the estimator refused there is no error.
+    measured = options.runs - int(table[f"{name}_refused"][highest])
+    known = float(table[f"{name}_std_percent"][highest]) / math.sqrt(measured)
     scatter = f" ± {known:.1f}" if math.isfinite(known) else ""
     printed = printed_for(options, _PUBLISHED_BIAS_PERCENT, ("limit_percent", *_NOT_PRINTED))
     return (
