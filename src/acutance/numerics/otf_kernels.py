@@ -62,24 +62,26 @@ def kernel_modes(mean: MeanOtf, u_cpp: Floats, v_cpp: Floats) -> Complexes:
 def _of_taps(u_cpp: Floats, v_cpp: Floats) -> Complexes:
     """OTF of every direction of taps alone, (n, k).
 
-    Along first: a table of frequencies has few, each with many across.
+    Taps opposite one another have conjugate transfers: their sum goes with the real part of one,
+    their difference with its imaginary part.
     """
-    taps, across = kernel_taps(), turns(u_cpp)
-    size, directions = taps.shape[1:]
-    v, row = np.unique(v_cpp, return_inverse=True)
-    is_table = v.size <= u_cpp.size // 4
-    by_column = (turns(v if is_table else v_cpp) @ taps.reshape(size, -1)).reshape(
-        -1, size, directions
-    )
-    if not is_table:
-        return np.asarray(np.einsum("nj,njk->nk", across, by_column))
-    found = np.empty((u_cpp.size, directions), complex)
-    ends = np.cumsum(np.bincount(row))[:-1]
-    for own, taps_across in zip(
-        np.split(np.argsort(row, kind="stable"), ends), by_column, strict=True
-    ):
-        found[own] = across[own] @ taps_across
+    middle, even, odd = _opposite_taps()
+    half = turns(v_cpp)[:, : KERNEL_REACH + 1, None] * turns(u_cpp)[:, None, :]
+    half = half.reshape(u_cpp.size, -1)[:, : len(even)]
+    found = np.empty((u_cpp.size, middle.size), complex)
+    found.real = middle + half.real.copy() @ even
+    found.imag = half.imag.copy() @ odd
     return found
+
+
+@cache
+def _opposite_taps() -> tuple[Floats, Floats, Floats]:
+    """Taps of every direction in the middle, (k,), and before it: with the opposite ones added and
+    taken off, (112, k) each."""
+    taps = kernel_taps().reshape(-1, kernel_taps().shape[-1])
+    half = len(taps) // 2
+    before, behind = taps[:half], taps[:half:-1]
+    return taps[half], before + behind, before - behind
 
 
 def turns(freq_cpp: Floats) -> Complexes:

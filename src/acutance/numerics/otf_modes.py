@@ -19,9 +19,9 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import eval_genlaguerre, gammaln
 
 from acutance.curves.grid import Floats
+from acutance.numerics.compiled import compiled
 from acutance.numerics.gaussian_pixel import FWHM_OF_SIGMA
 from acutance.numerics.gaussian_pixel_2d import GaussianPixel2d
 from acutance.numerics.lorentz_tail import tail_otf
@@ -92,17 +92,23 @@ class ProcessModes:
         """Largest angular order."""
         return max(process.orders for process in PROCESSES)
 
-    def radial(self, order: int, freq_cpp: Floats) -> Floats:
-        """Radial parts with an angular order, (n, r), scaled to a unit process."""
-        parts = [
-            _state(process, order, total, freq_cpp * self.width_px)
-            for process in PROCESSES
-            for total in range(order, process.orders + 1, 2)
-        ]
-        if order == 0:
-            # A term falling like 1/u^2 without end, as diffraction's does, has this transfer.
-            parts.append(tail_otf(freq_cpp, self.width_px))
-        return np.stack(parts, axis=-1) if parts else np.empty((freq_cpp.size, 0))
+    def radial(self, freq_cpp: Floats) -> list[Floats]:
+        """Radial parts of every angular order, (n, r) each, scaled to a unit process."""
+        found = self._radial(freq_cpp)
+        return np.split(found, _ends()[:-1], axis=1)
+
+    def _radial(self, freq_cpp: Floats) -> Floats:
+        """Radial parts of all angular orders, (n, r)."""
+        found = np.empty((freq_cpp.size, _ends()[-1]))
+        scales = np.array([_states(process)[0] for process in PROCESSES])
+        _fill_radial(found, freq_cpp * self.width_px, scales, _counts(), _stds())
+        # A term falling like 1/u^2 without end, as diffraction's does, has this transfer.
+        found[:, _ends()[0] - 1] = tail_otf(freq_cpp, self.width_px)
+        return found
+
+    def sizes(self) -> NDArray[np.intp]:
+        """Number of radial parts of every angular order, (orders + 1,)."""
+        return np.diff(_ends(), prepend=0)
 
     def blocks(self) -> NDArray[np.intp]:
         """Number of the amplitude of each state, in the order of `otf_modes`: see `_block`."""
@@ -110,18 +116,72 @@ class ProcessModes:
 
     def otf_modes(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         """All states at frequencies across and along, (n, r)."""
-        angle = np.arctan2(v_cpp, u_cpp)
-        # A table of frequencies has every distance from zero several times.
-        freq, where = np.unique(np.hypot(u_cpp, v_cpp), return_inverse=True)
-        found = np.zeros((u_cpp.size, self.blocks().size), complex)
-        end = 0
-        for order in range(self.orders + 1):
-            radial = self.radial(order, freq)[where]
-            seen = found.imag if order % 2 else found.real
-            for wave in (np.cos, np.sin) if order else (np.cos,):
-                first, end = end, end + radial.shape[1]
-                np.multiply(radial, wave(order * angle)[:, None], out=seen[:, first:end])
+        found = np.empty((u_cpp.size, self.blocks().size), complex)
+        _turn(found, self._radial(np.hypot(u_cpp, v_cpp)), _ends(), u_cpp, v_cpp)
         return found
+
+
+@compiled
+def _fill_radial(
+    found: Floats, freq: Floats, scales: Floats, counts: NDArray[np.intp], stds: Floats
+) -> None:
+    """Fourier transforms of the states' radial parts, order by order, put into `found` (n, r).
+
+    For every process and order these are Laguerre's polynomials of the square of the frequency, of
+    no node, one, two and so on, under one envelope.
+
+    Parameters
+    ----------
+    found : (n, r) array
+        A column behind those of order 0 is left out.
+    freq : (n,) array
+        In units of the inverse width.
+    scales : (p,) array
+        Of the processes.
+    counts : (orders, p) int array
+        How many states of an order a process has.
+    stds : (r,) array
+        Factors of all columns.
+    """
+    x, envelope = np.empty(scales.size), np.empty(scales.size)
+    for i in range(freq.size):
+        for p in range(scales.size):
+            x[p] = 2 * math.pi * scales[p] * freq[i]
+            envelope[p] = math.exp(-0.5 * x[p] ** 2)
+        k = 0
+        for order in range(len(counts)):
+            for p in range(scales.size):
+                polynomial, change, square = 1.0, 0.0, x[p] ** 2
+                for nodes in range(counts[order, p]):
+                    found[i, k] = stds[k] * envelope[p] * polynomial
+                    change = (nodes * change - square * polynomial) / (nodes + order + 1)
+                    polynomial += change
+                    k += 1
+                envelope[p] *= x[p]
+            k += order == 0
+
+
+@compiled
+def _turn(found: Complexes, radial: Floats, ends: NDArray[np.intp], u: Floats, v: Floats) -> None:
+    """Radial parts (n, r) times cos and sin of every order, put into `found` (n, states).
+
+    Those of an angular order end at a column of `ends`. The states of even orders are real, the
+    others imaginary.
+    """
+    for i in range(u.size):
+        freq, row, own = math.hypot(u[i], v[i]), radial[i], found[i]
+        one = complex(u[i] / freq, v[i] / freq) if freq > 0 else complex(1.0, 0.0)
+        wave, first, to = complex(1.0, 0.0), 0, 0
+        for order in range(ends.size):
+            unit, size = complex(0.0, 1.0) if order % 2 else complex(1.0, 0.0), ends[order] - first
+            for k in range(size):
+                own[to + k] = unit * (wave.real * row[first + k])
+            to += size
+            if order:
+                for k in range(size):
+                    own[to + k] = unit * (wave.imag * row[first + k])
+                to += size
+            wave, first = wave * one, ends[order]
 
 
 def _states(process: Process) -> tuple[float, float, float]:
@@ -136,15 +196,37 @@ def _states(process: Process) -> tuple[float, float, float]:
     return scale, ratio, first / projected
 
 
-def _state(process: Process, order: int, total: int, freq: Floats) -> Floats:
-    """Fourier transform of one state's radial part, times its standard deviation, (n,)."""
-    scale, ratio, first = _states(process)
-    nodes = (total - order) // 2
-    x = 2 * math.pi * scale * freq
-    norm = math.exp(0.5 * (math.log(2) + gammaln(nodes + 1) - gammaln(nodes + order + 1)))
-    angular = 1 / math.sqrt(2 * math.pi if order == 0 else math.pi)
-    value = norm * angular * x**order * eval_genlaguerre(nodes, order, x * x) * np.exp(-0.5 * x * x)
-    return np.asarray(2 * math.pi * scale * math.sqrt(first * ratio**total) * value)
+@cache
+def _counts() -> NDArray[np.intp]:
+    """How many states every process has of every angular order, (orders, processes)."""
+    orders = np.arange(max(process.orders for process in PROCESSES) + 1)[:, None]
+    last = np.array([process.orders for process in PROCESSES])
+    return np.asarray(np.maximum((last - orders) // 2 + 1, 0), np.intp)
+
+
+@cache
+def _ends() -> NDArray[np.intp]:
+    """Where the radial parts of every angular order end: those of order 0 with the tail's."""
+    return np.cumsum(_counts().sum(axis=1)) + 1
+
+
+@cache
+def _stds() -> Floats:
+    """Standard deviations of all radial parts, times the factors of their transforms, (r,).
+
+    These belong to Laguerre polynomials that are 1 at zero. The tail has its own.
+    """
+    found = []
+    for order, counts in enumerate(_counts().tolist()):
+        angular = 1 / math.sqrt(2 * math.pi if order == 0 else math.pi)
+        for process, count in zip(PROCESSES, counts, strict=True):
+            scale, ratio, first = _states(process)
+            for nodes in range(count):
+                norm = math.sqrt(2 * math.comb(nodes + order, order) / math.factorial(order))
+                std = math.sqrt(first * ratio ** (order + 2 * nodes))
+                found.append(norm * angular * 2 * math.pi * scale * std)
+        found += [1.0] if order == 0 else []
+    return np.array(found)
 
 
 @cache

@@ -4,11 +4,13 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import cumulative_trapezoid
+from scipy.special import jv
 
 from acutance.numerics.otf_modes import MEAN_MODES, MeanOtf, ProcessModes
 from acutance.optics import Detector, Exponential, Gaussian, Sensor, Smear
 from acutance.simulate import star
-from acutance.targets.periodic.star_waves import StarTable
+from acutance.targets.periodic.star_waves import BlurredStar, StarTable
 
 CENTRE = (40.3, 39.6)
 CYCLES, RIM, TURN = 20, 28.0, 17.0
@@ -73,6 +75,30 @@ def test_phase_of_an_asymmetric_system_and_a_turned_ellipse():
     assert np.max(np.abs(error[inner])) < 0.01
     odd = np.abs((image[kept] - 700) / 500 - columns[:, [0]] @ beta[[0]])
     assert np.max(odd[inner]) > 0.1
+
+
+def test_high_harmonics_are_whole_at_all_radii():
+    """Their Bessel functions are left out only where they are nothing."""
+    blur = MeanOtf(0.04, 0.0, 0.04)
+    rim, outer, k = 24.0, 26.0, 8
+    radius, phase = np.linspace(2.0, 23.0, 20), 0.3
+    found = BlurredStar(blur, k, "square", outer, rim)(radius, np.full(20, phase), np.zeros(20))
+    step = 1 / (2 * outer + 24)
+    freq = step * np.arange(1, math.ceil(1.5 / step))
+    angle = 2 * math.pi * np.arange(64) / 64
+    transfer = blur.otf(np.outer(freq, np.cos(angle)), np.outer(freq, np.sin(angle)))
+    grid = np.linspace(0.0, 2 * math.pi * rim * freq[-1], 8000)
+    wanted = np.zeros(20)
+    for index, number in enumerate(range(1, int(1.3 * 2 * math.pi * rim / k) + 1, 2)):
+        order = number * k
+        whole = cumulative_trapezoid(grid * jv(order, grid), grid, initial=0) / order
+        weight = order * step / freq * np.interp(2 * math.pi * rim * freq, grid, whole)
+        for m in range(-12, 13, 2):
+            part = np.mean(transfer * np.exp(-1j * m * angle), axis=1)
+            bessel = jv(order + m, 2 * math.pi * np.outer(radius, freq))
+            wave = (-1.0) ** index / number * 1j**m * np.exp(1j * number * phase)
+            wanted += (wave * (bessel @ (weight * part))).real
+    assert np.max(np.abs(found - wanted)) < 5e-4
 
 
 def test_derivative_by_phase():

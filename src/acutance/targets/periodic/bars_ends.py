@@ -21,7 +21,7 @@ from acutance.curves.grid import Floats
 from acutance.geometry.bar_group import Bars
 from acutance.numerics.lookup import CubicLookup
 from acutance.numerics.otf_modes import MeanOtf, ProcessModes
-from acutance.targets.periodic.otf_model import all_modes, mode_count
+from acutance.targets.periodic.otf_model import mode_count, mode_parts
 
 __all__ = ["EndEffect", "end_effects"]
 
@@ -136,7 +136,8 @@ class _Frequencies:
         for first in range(0, across.size, count):
             f = np.asarray(across[first : first + count])
             u, v = f * x - g * y, f * y + g * x
-            modes = all_modes(mean, mode_count(states), u.ravel(), v.ravel()).astype(np.complex64)
+            parts = mode_parts(mean, mode_count(states), u.ravel(), v.ravel())
+            modes = np.hstack(parts, dtype=np.complex64, casting="same_kind")
             modes = modes.reshape(g.size, f.size, -1)
             yield _Block(f, modes[:-1], modes[-1])
 

@@ -34,11 +34,11 @@ from acutance.targets.periodic.oblique_blur import aligned_or_turned
 from acutance.targets.periodic.otf_model import FittedOtf, level_row, mode_count
 from acutance.targets.periodic.otf_regression import (
     FREE_STD,
+    PosedPixels,
     Regression,
     mean_variance,
     otf_prior,
     reweighted,
-    weighted_normal,
 )
 from acutance.targets.periodic.stated_contrast import Levels, StatedContrast, with_level
 from acutance.targets.periodic.tuned import (
@@ -164,8 +164,8 @@ def _place_groups(
     for _ in range(_MAX_PLACE_PASSES):
         pixels = _pixels_of(image, groups)
         nothing = [np.zeros(one.value.size) for one in pixels]
-        weight = np.ones(sum(one.value.size for one in pixels))
-        fitted = _regression(pixels, stated, mean, None, contrast, weight, nothing)
+        posed = _posed(pixels, mean, None, contrast, np.ones(sum(map(np.size, nothing))), nothing)
+        fitted = _regression(posed, pixels, stated, mean, None, contrast)
         wider = _width_of_bars(mean, fitted.otf, pixels)
         settled = wider == mean and _longest_update(fitted, pixels) < _PLACED_PX
         groups = tuple(one.moved(_own(fitted, k)[0][2:]) for k, one in enumerate(pixels))
@@ -204,10 +204,10 @@ def _fit_otf(
         ends = np.cumsum([one.value.size for one in pixels])[:-1]
         weight = np.concatenate(_taken_over(pixels, before, weights, 1.0))
         light = _taken_over(pixels, before, all_light, 0.0)
+        posed = _posed(pixels, mean, states, contrast, weight, light, bars_ends)
         fitted = _regression(
-            pixels, stated, mean, states, contrast, weight, light,
-            bars_ends, levels, noise_found.inflation, earlier,
-        )  # fmt: skip
+            posed, pixels, stated, mean, states, contrast, levels, noise_found.inflation, earlier
+        )
         standard = fitted.residual / fitted.noise
         again = reweighted(standard, rounding / fitted.noise) if robust else weight
         noise_found = _correlation(standard, pixels)
@@ -226,9 +226,8 @@ def _fit_otf(
     seen = None
     if levels is not None:
         free = _regression(
-            pixels, stated, mean, states, contrast, weight, light, bars_ends,
-            inflation=noise_found.inflation,
-        ).otf  # fmt: skip
+            posed, pixels, stated, mean, states, contrast, inflation=noise_found.inflation
+        ).otf
         seen = StatedContrast(levels, Estimate(abs(free.level), free.level_std))
     own = [_own(fitted, number) for number in range(len(pixels))]
     first = _OWN * len(pixels)
@@ -276,36 +275,45 @@ def _same_sign(level: float, contrast: float) -> float:
     return math.copysign(max(abs(level), 1e-3 * abs(contrast)), contrast)
 
 
-def _regression(
+def _posed(
     pixels: tuple[GroupPixels, ...],
-    stated: tuple[Bars, ...],
     mean: MeanOtf,
     states: ProcessModes | None,
     contrast: float,
     weight: Floats,
     light: list[Floats],
     bars_ends: Sequence[EndEffect] = (),
+) -> PosedPixels:
+    """All groups where they are taken to be, in one linear model; without `states` the mean's."""
+    around = contrast * np.concatenate(light)
+    design = _design(pixels, mean, states, contrast, around, bars_ends)
+    return PosedPixels.of(design, np.concatenate([one.value for one in pixels]) - around, weight)
+
+
+def _regression(
+    posed: PosedPixels,
+    pixels: tuple[GroupPixels, ...],
+    stated: tuple[Bars, ...],
+    mean: MeanOtf,
+    states: ProcessModes | None,
+    contrast: float,
     levels: Levels | None = None,
     inflation: float = 1.0,
     earlier: Posterior | None = None,
 ) -> Regression:
-    """All groups where they are taken to be, in one linear model; without `states` the mean's."""
-    around = contrast * np.concatenate(light)
-    design = _design(pixels, mean, states, contrast, around, bars_ends)
-    value = np.concatenate([one.value for one in pixels]) - around
-    first = _OWN * len(pixels) + 1
-    normal = weighted_normal(design, value, weight)
+    """One regression of all groups."""
+    first, normal = _OWN * len(pixels) + 1, posed.normal
     variance = mean_variance(normal, first + 4)
     if levels is not None:
         variance = variance if earlier is None else earlier.variance
-        row = np.zeros(design.shape[1])
-        row[first:] = level_row(mean, row.size - first)
+        row = np.zeros(normal.projection.size)
+        row[first:] = level_row(row.size - first)
         level = math.copysign(levels.bright - levels.dark, contrast)
         normal = with_level(normal, row, level, levels.std, variance * inflation)
     prior = _prior(pixels, stated, mean, states, contrast, level_stated=levels is not None)
     posterior = prior.posterior(normal, variance, inflation, earlier=earlier)
     otf = FittedOtf(mean, posterior.beta[first:], posterior.factor[first:])
-    return Regression(posterior, otf, value - design @ posterior.beta, design)
+    return Regression(posterior, otf, posed.residual(posterior), posed.design)
 
 
 def _design(

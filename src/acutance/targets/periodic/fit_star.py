@@ -30,11 +30,11 @@ from acutance.targets.periodic.curvature import find_curvature
 from acutance.targets.periodic.otf_model import FittedOtf, level_row
 from acutance.targets.periodic.otf_regression import (
     FREE_STD,
+    PosedPixels,
     Regression,
     mean_variance,
     otf_prior,
     reweighted,
-    weighted_normal,
 )
 from acutance.targets.periodic.star_kernels import KERNEL_REACH_PX, kernel_columns
 from acutance.targets.periodic.star_rings import first_radius, ring_modulations, shape_error
@@ -190,9 +190,8 @@ def solve_star(
             round(star.rim_px * 4) / 4,
         )  # fmt: skip
         design = _design(star, rows, cols, table, blurred, level)
-        fitted = _regression(
-            design, above, weight, table, level, levels, noise_found.inflation, earlier, noise
-        )
+        posed = PosedPixels.of(design, above, weight)
+        fitted = _regression(posed, table, level, levels, noise_found.inflation, earlier, noise)
         standard = fitted.residual / fitted.noise
         again = reweighted(standard, rounding / fitted.noise) if robust else weight
         found = correlation(np.clip(standard, -4, 4), rows, cols)
@@ -217,9 +216,7 @@ def solve_star(
     otf = replace(fitted.otf, shape_error=_error_of_the_prior(fitted.otf).with_another(seen))
     stated, one = None, amplitude_of(1.0, wave)
     if levels is not None:
-        free = _regression(
-            design, above, weight, table, level, None, noise_found.inflation, None, None
-        ).otf
+        free = _regression(posed, table, level, None, noise_found.inflation, None, None).otf
         stated = StatedContrast(levels, Estimate(free.level / one, free.level_std / one))
     contrast = fitted.otf.level / one
     spokes = design[:, _FIRST:] @ fitted.posterior.beta[_FIRST:]
@@ -323,9 +320,7 @@ def _design(
 
 
 def _regression(
-    design: Floats,
-    value: Floats,
-    weight: Floats,
+    posed: PosedPixels,
     table: StarTable,
     level: float,
     levels: Levels | None,
@@ -334,12 +329,12 @@ def _regression(
     noise: float | None,
 ) -> Regression:
     """One regression; `noise` is that of the one before."""
-    normal = weighted_normal(design, value, weight)
+    normal = posed.normal
     variance = mean_variance(normal, _FIRST + 6)
     if levels is not None:
         variance = variance if noise is None else noise**2
-        row = np.zeros(design.shape[1])
-        row[_FIRST:] = level_row(table.mean, row.size - _FIRST)
+        row = np.zeros(normal.projection.size)
+        row[_FIRST:] = level_row(row.size - _FIRST)
         stated, std = (
             amplitude_of(one, table.wave) for one in (levels.bright - levels.dark, levels.std)
         )
@@ -347,7 +342,7 @@ def _regression(
     prior = _prior(table.mean, level, level_stated=levels is not None)
     posterior = prior.posterior(normal, variance, inflation, earlier=earlier)
     otf = FittedOtf(table.mean, posterior.beta[_FIRST:], posterior.factor[_FIRST:])
-    return Regression(posterior, otf, value - design @ posterior.beta, design)
+    return Regression(posterior, otf, posed.residual(posterior), posed.design)
 
 
 def _prior(mean: MeanOtf, level: float, *, level_stated: bool) -> CombinedPrior:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from acutance.numerics.otf_modes import (
 )
 from acutance.numerics.shape_error import ShapeError
 
-__all__ = ["FittedOtf", "all_modes", "level_row", "mode_count"]
+__all__ = ["FittedOtf", "all_modes", "level_row", "mode_count", "mode_parts"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,15 +85,20 @@ class FittedOtf:
 
     @cached_property
     def _at_zero(self) -> Floats:
-        return level_row(self.mean, self.beta.size)
+        return level_row(self.beta.size)
 
     def _modes(self, u_cpp: Floats, v_cpp: Floats) -> Complexes:
         return all_modes(self.mean, self.beta.size, u_cpp, v_cpp)
 
 
-def level_row(mean: MeanOtf, size: int) -> Floats:
-    """Contribution of each of `size` coefficients to the level: its mode at zero frequency."""
-    return np.asarray(all_modes(mean, size, np.zeros(1), np.zeros(1))[0].real)
+@cache
+def level_row(size: int) -> Floats:
+    """Contribution of each of `size` coefficients to the level: its mode at zero frequency.
+
+    There the modes of all means are the same.
+    """
+    modes = all_modes(MeanOtf(1.0, 0.0, 1.0), size, np.zeros(1), np.zeros(1))
+    return np.asarray(modes[0].real)
 
 
 def mode_count(states: ProcessModes | None) -> int:
@@ -105,8 +110,13 @@ def mode_count(states: ProcessModes | None) -> int:
 
 def all_modes(mean: MeanOtf, size: int, u_cpp: Floats, v_cpp: Floats) -> Complexes:
     """The mean's modes and, of more coefficients, the processes' and the kernels', (n, size)."""
+    return np.hstack(mode_parts(mean, size, u_cpp, v_cpp))
+
+
+def mode_parts(mean: MeanOtf, size: int, u_cpp: Floats, v_cpp: Floats) -> list[Complexes]:
+    """Those of the mean, of the processes and of the kernels apart, (n, k) each."""
     own = mean.modes(u_cpp, v_cpp)
     if size == MEAN_MODES:
-        return own
+        return [own]
     states = ProcessModes(mean.width_px).otf_modes(u_cpp, v_cpp)
-    return np.hstack([own, states, kernel_modes(mean, u_cpp, v_cpp)])
+    return [own, states, kernel_modes(mean, u_cpp, v_cpp)]

@@ -25,11 +25,11 @@ from acutance.targets.periodic.tuned import (
 
 __all__ = [
     "FREE_STD",
+    "PosedPixels",
     "Regression",
     "mean_variance",
     "otf_prior",
     "reweighted",
-    "weighted_normal",
 ]
 
 FREE_STD = 3.0
@@ -52,13 +52,34 @@ class Regression(NamedTuple):
         return math.sqrt(self.posterior.variance)
 
 
-def weighted_normal(design: Floats, value: Floats, weight: Floats) -> Normal:
-    """Normal equations of pixels (n,) in the columns of a design (n, m), with weights (n,)."""
-    # Of a matrix by itself, transposed, half of the products are the others.
-    root = np.sqrt(weight)
-    weighted, values = design * root[:, None], value * root
-    gram, projection = weighted.T @ weighted, weighted.T @ values
-    return Normal(gram, projection, float(values @ values), float(np.sum(weight)))
+class PosedPixels(NamedTuple):
+    """Pixels as a linear model, whose sums serve all regressions of them.
+
+    Attributes
+    ----------
+    design : (n, m) array
+    value : (n,) array
+    normal : Normal
+    """
+
+    design: Floats
+    value: Floats
+    normal: Normal
+
+    @classmethod
+    def of(cls, design: Floats, value: Floats, weight: Floats) -> PosedPixels:
+        """Pixels (n,) in the columns of a design (n, m), with weights (n,)."""
+        # Of a matrix by itself, transposed, half of the products are the others.
+        root = np.sqrt(weight)
+        weighted, values = design * root[:, None], value * root
+        gram, projection = weighted.T @ weighted, weighted.T @ values
+        return cls(
+            design, value, Normal(gram, projection, float(values @ values), float(np.sum(weight)))
+        )
+
+    def residual(self, posterior: Posterior) -> Floats:
+        """What the fitted coefficients leave of the values, (n,)."""
+        return self.value - self.design @ posterior.beta
 
 
 def mean_variance(normal: Normal, few: int) -> float:
