@@ -346,28 +346,33 @@ class _Profile:
     def rest(self, offset: float, period: float, count: int, blur: float) -> tuple[float, float]:
         """Share of its variance that a blurred group leaves, and the group's height in it."""
         scale = math.sqrt(0.5) / math.hypot(blur, 0.29)
-        model = _blurred_bars(self.places, offset, period, count, scale)
-        model -= model.sum() / model.size
-        shared = float(model @ self.own)
-        size = float(model @ model)
+        shared, size = _products(self.places, self.own, offset, period, count, scale)
         if not (self.power > 0 and size > 0 and shared > 0):
             return 1.0, 0.0
         return 1 - shared**2 / (size * self.power), shared / size
 
 
 @compiled
-def _blurred_bars(places: Floats, offset: float, period: float, count: int, scale: float) -> Floats:
-    """Profile of a group of bars of height 1, whose edges are erf(scale * x)."""
-    model = np.zeros(places.size)
+def _products(
+    places: Floats, own: Floats, offset: float, period: float, count: int, scale: float
+) -> tuple[float, float]:
+    """Products of a group of bars with a profile of mean 0 and, without its mean, with itself.
+
+    The bars have the height 1, their edges are erf(scale * x).
+    """
+    total, squares, shared = 0.0, 0.0, 0.0
     for i in range(places.size):
-        edge = places[i] - offset + 0.5 * (count - 0.5) * period
+        edge, level = places[i] - offset + 0.5 * (count - 0.5) * period, 0.0
         for _ in range(count):
             begin, end = edge * scale, (edge - 0.5 * period) * scale
             # Elsewhere the bar is black or white to the last digit.
             if begin > -_FAR and end < _FAR:
-                model[i] += 0.5 * (math.erf(begin) - math.erf(end))
+                level += 0.5 * (math.erf(begin) - math.erf(end))
             edge -= period
-    return model
+        total += level
+        squares += level * level
+        shared += level * own[i]
+    return shared, squares - total**2 / places.size
 
 
 def _of_one_kind(found: list[_Candidate]) -> tuple[Bars, ...]:

@@ -14,7 +14,7 @@ from acutance.curves.grid import Floats
 from acutance.errors import NoBarsError
 from acutance.geometry.bar_group import Bars
 from acutance.numerics.lookup import CubicLookup
-from acutance.numerics.otf_modes import HIGHEST_CPP, MeanOtf, ProcessModes
+from acutance.numerics.otf_modes import HIGHEST_CPP, Complexes, MeanOtf, ProcessModes
 from acutance.targets.periodic.otf_model import all_modes, mode_count
 
 __all__ = ["SIDE_PX", "GroupPixels", "group_columns", "pixels_about"]
@@ -135,23 +135,50 @@ def _profiles(
     places : (n,) array
     table : (n, m + 2) array
     """
-    places = np.asarray(_STEP_PX * np.arange(-math.ceil(reach / _STEP_PX) - 3,
-                                             math.ceil(reach / _STEP_PX) + 4))  # fmt: skip
+    count = math.ceil(reach / _STEP_PX) + 4
     step = 1 / (2 * reach + bars.width_px + 30.0)
     freq: Floats = np.asarray(step * (np.arange(math.ceil(HIGHEST_CPP / step)) + 0.5))
     x, y = unit_vector(bars.normal_deg)
     u, v = freq * x, freq * y
-    transfer = all_modes(blur, mode_count(states), u, v)
-    spectrum = bars.spectrum(freq)
-    turns = np.exp(2j * math.pi * np.outer(places, freq))
-    weighted = (2 * step) * turns * spectrum
-    modes = weighted.real @ transfer.real - weighted.imag @ transfer.imag
-    mean = 2 * step * blur.otf(u, v)
-    by_place = (turns * (-2j * math.pi * freq * spectrum * mean)).real.sum(axis=1)
+    spectrum, mean = bars.spectrum(freq), blur.otf(u, v)
     small = 1e-4
     change = (
         replace(bars, period_px=bars.period_px + small).spectrum(freq)
         - replace(bars, period_px=bars.period_px - small).spectrum(freq)
     ) / (2 * small)
-    by_period = (turns * (change * mean)).real.sum(axis=1)
-    return places, np.column_stack([modes, by_place, by_period])
+    spectra = np.column_stack([
+        spectrum[:, None] * all_modes(blur, mode_count(states), u, v),
+        -2j * math.pi * freq * spectrum * mean,
+        change * mean,
+    ])  # fmt: skip
+    waves = _waves(count, freq)
+    even, odd = (
+        2 * step * _products(*parts)
+        for parts in ((waves.real, spectra.real), (waves.imag, spectra.imag))
+    )
+    places = np.asarray(_STEP_PX * np.arange(1 - count, count))
+    return places, np.concatenate([(even + odd)[:0:-1], even - odd])
+
+
+def _waves(count: int, freq: Floats) -> Complexes:
+    """Waves ``exp(2 pi i f s)`` at so many places s of the table from 0 on, (count, n).
+
+    Products of those at every sixteenth place and those within the first sixteen.
+    """
+    some = 16
+    far = np.arange(0, count, some)
+    coarse, fine = (
+        np.exp(2j * math.pi * _STEP_PX * np.outer(steps, freq)) for steps in (far, np.arange(some))
+    )
+    return np.asarray((coarse[:, None] * fine).reshape(-1, freq.size)[:count])
+
+
+def _products(left: Floats, right: Floats) -> Floats:
+    """The product of two matrices: columns of the right one that are zero are left out.
+
+    Most modes are real or imaginary.
+    """
+    kept = right.any(axis=0)
+    found = np.zeros((len(left), right.shape[1]))
+    found[:, kept] = np.ascontiguousarray(left) @ right[:, kept]
+    return found
