@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from acutance.curves.grid import Floats
 from acutance.geometry.star_geometry import Flags
+from acutance.numerics.compiled import compiled
 
 __all__ = ["PartWaves"]
 
@@ -56,20 +57,33 @@ class PartWaves:
         sizes = np.bincount(part, minlength=count)
         enough = sizes >= _MIN_PIXELS
         cos, sin = np.cos(turned), np.sin(turned)
-
-        def sums(values: Floats) -> Floats:
-            return np.asarray(np.bincount(part, values, minlength=count))
-
-        gram = np.empty((3, 3, count))
-        gram[0, 0], gram[0, 1], gram[0, 2] = sizes, sums(cos), sums(sin)
-        gram[1, 1], gram[1, 2] = sums(cos * cos), sums(cos * sin)
-        gram[2, 2] = sizes - gram[1, 1]
-        gram[1, 0], gram[2, 0], gram[2, 1] = gram[0, 1], gram[0, 2], gram[1, 2]
+        c, s, cc, cs, *seen = _sums(part, cos, sin, value, count)
+        gram = np.array([[sizes, c, s], [c, cc, cs], [s, cs, sizes - cc]])
         # Pixels of one phase alone have no wave.
         gram += 1e-9 * sizes * np.eye(3)[..., None]
-        seen = np.array([sums(value), sums(cos * value), sums(sin * value)])
         fit = np.zeros((3, count))
-        solved = np.linalg.solve(gram[..., enough].T, seen[:, enough].T[..., None])
+        solved = np.linalg.solve(gram[..., enough].T, np.array(seen)[:, enough].T[..., None])
         fit[:, enough] = solved[..., 0].T
         wave = fit[1, part] * cos + fit[2, part] * sin
-        return cls(sizes, enough, fit[1], fit[2], wave, sums((value - fit[0, part] - wave) ** 2))
+        left = (value - fit[0, part] - wave) ** 2
+        rest = np.asarray(np.bincount(part, left, minlength=count), float)
+        return cls(sizes, enough, fit[1], fit[2], wave, rest)
+
+
+@compiled
+def _sums(part: NDArray[np.intp], cos: Floats, sin: Floats, value: Floats, count: int) -> Floats:
+    """Sums over the pixels of every part, (7, count).
+
+    Of cos, of sin, of two of their products, and of the value alone and with either.
+    """
+    found = np.zeros((7, count))
+    for i in range(part.size):
+        k, c, s = part[i], cos[i], sin[i]
+        found[0, k] += c
+        found[1, k] += s
+        found[2, k] += c * c
+        found[3, k] += c * s
+        found[4, k] += value[i]
+        found[5, k] += c * value[i]
+        found[6, k] += s * value[i]
+    return found

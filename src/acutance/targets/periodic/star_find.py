@@ -78,12 +78,12 @@ def find_star(
     first = max(local, key=lambda n: local[n]) if cycles is None else cycles
     start = SiemensStar(row, col, first, 0.0, farthest)
     found = _settled(smooth, lively, start)
-    whole = _strengths(smooth, lively, (found.row, found.col), farthest, first)
     likely = sorted(local, key=lambda n: -local[n])[:_LIKELY_COUNTS]
     others = {*likely, *(first + k for k in _NEXT_COUNTS)} & local.keys()
     if cycles is not None:
-        _require_count(smooth, lively, start, whole.get(cycles, 0.0), others)
+        _require_count(smooth, lively, start, _strength(smooth, lively, found), others)
     else:
+        whole = _strengths(smooth, lively, (found.row, found.col), farthest, None)
         found = _counted(smooth, lively, start, found, whole, others)
     return extent_of(smooth, usable, found, found.radius_at(_COARSE_CPP))
 
@@ -116,8 +116,13 @@ def _about_own(smooth: Floats, lively: Flags, start: SiemensStar) -> tuple[Sieme
         star = _settled(smooth, lively, start)
     except NoStarError:
         return start, 0.0
+    return star, _strength(smooth, lively, star)
+
+
+def _strength(smooth: Floats, lively: Flags, star: SiemensStar) -> float:
+    """The share of the rings that the cycles of a star explain about its centre."""
     about = PixelsAbout.of(smooth, lively, star.row, star.col)
-    return star, about.strength(star.cycles, star.radius_at(_COARSE_CPP), star.rim_px, 1)
+    return about.strength(star.cycles, star.radius_at(_COARSE_CPP), star.rim_px, 1)
 
 
 def _settled(smooth: Floats, lively: Flags, star: SiemensStar) -> SiemensStar:

@@ -85,13 +85,9 @@ def ring_modulations(
     """
     rows, cols = np.nonzero(np.isfinite(image))
     radius, angle = star.polar(rows.astype(float), cols.astype(float))
-    value = image[rows, cols]
     kept = star.holds(angle, 2.0 / np.maximum(radius, 1.0))
-    found = []
-    for low in np.arange(inner_px, outer_px - 0.5, 1.0):
-        here = kept & (radius >= low) & (radius < low + 1)
-        if np.count_nonzero(here) < MIN_RING_PIXELS:
-            continue
+    radius, angle, value, found = radius[kept], angle[kept], image[rows, cols][kept], []
+    for here in _members(radius, inner_px, outer_px, MIN_RING_PIXELS):
         phase = star.cycles * angle[here] + star.alpha_rad
         design = np.stack([np.ones(phase.size), np.cos(phase), np.sin(phase)], axis=1)
         fit, *_ = np.linalg.lstsq(design, value[here], rcond=None)
@@ -150,12 +146,22 @@ def _residual_rings(
     """Radius, directions and residuals of every ring that has enough pixels."""
     rows, cols = np.nonzero(np.isfinite(residual))
     radius, angle = star.polar(rows.astype(float), cols.astype(float))
-    value, found = residual[rows, cols], []
-    for low in np.arange(inner_px, outer_px - 0.5, 1.0):
-        here = (radius >= low) & (radius < low + 1)
-        if np.count_nonzero(here) >= _MIN_PIXELS:
-            found.append((float(np.mean(radius[here])), angle[here], value[here]))
-    return found
+    value = residual[rows, cols]
+    return [
+        (float(np.mean(radius[here])), angle[here], value[here])
+        for here in _members(radius, inner_px, outer_px, _MIN_PIXELS)
+    ]
+
+
+def _members(
+    radius: Floats, inner_px: float, outer_px: float, least: int
+) -> list[NDArray[np.intp]]:
+    """Which pixels belong to every ring of a pixel that has at least so many."""
+    order = np.argsort(radius)
+    starts: Floats = np.asarray(np.arange(inner_px, outer_px - 0.5, 1.0))
+    first, end = np.searchsorted(radius[order], [starts, starts + 1])
+    rings = zip(first.tolist(), end.tolist(), strict=True)
+    return [np.sort(order[one:other]) for one, other in rings if other - one >= least]
 
 
 def _spoke_power(standard: Floats, angle: Floats, star: SiemensStar) -> tuple[float, float, int]:
