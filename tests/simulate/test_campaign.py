@@ -9,6 +9,7 @@ from acutance.simulate import (
     EdgeTarps,
     Noise,
     Patch,
+    Point,
     PulseTarp,
     add_patches,
     brookings,
@@ -58,6 +59,16 @@ def test_windows_give_what_the_whole_image_gives():
     canvas = np.zeros(SHAPE)
     add_patches(canvas, GENERIC, patches)
     np.testing.assert_allclose(canvas, render_patches(GENERIC, patches, SHAPE), atol=1e-3)
+
+
+def test_points_and_patches_together_are_the_sum_of_each_alone():
+    shapes = [
+        Point(12.3, 20.1, 900.0),
+        Patch(15.0, 30.0, 8.0, 5.0, 10.0, 60.0),
+        Point(20.0, 9.6, 400.0),
+    ]
+    alone = sum(render_patches(GENERIC, [one], SHAPE) for one in shapes)
+    np.testing.assert_allclose(render_patches(GENERIC, shapes, SHAPE), alone, atol=1e-9)
 
 
 def test_a_stamp_is_cut_at_the_borders():

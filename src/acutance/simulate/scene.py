@@ -84,8 +84,7 @@ class Patch:
         """Fourier transform of the patch about its own centre (real), at cycles per pixel."""
         cos, sin = unit_vector(self.turn_deg)
         u, v = np.asarray(u, float), np.asarray(v, float)
-        p = cos * u + sin * v
-        q = cos * v - sin * u
+        p, q = cos * u + sin * v, cos * v - sin * u
         area = self.contrast * self.width_px * self.height_px
         return np.asarray(area * np.sinc(self.width_px * p) * np.sinc(self.height_px * q))
 
@@ -217,12 +216,14 @@ def render_patches(
     _require_shapes(patches)
     rows, cols = (size + margin_px for size in shape)
     folded = np.zeros((rows, cols // 2 + 1), complex)
+    points = [(one.row, one.col, one.flux) for one in patches if isinstance(one, Point)]
+    row, col, flux = np.array(points, float).reshape(-1, 3).T
     for u, v, otf in _bands(sensor, rows, cols):
-        ground = np.zeros(folded.shape, complex)
-        for patch in patches:
-            phase_u = np.exp(-2j * math.pi * u * patch.col)
-            phase_v = np.exp(-2j * math.pi * v * patch.row)
-            ground += patch.spectrum(u, v) * (phase_v * phase_u)
+        # Of all points at once: a product of two matrices.
+        ground = (np.exp(-2j * math.pi * v * row) * flux) @ np.exp(-2j * math.pi * np.outer(col, u))
+        for patch in (one for one in patches if not isinstance(one, Point)):
+            phase = np.exp(-2j * math.pi * v * patch.row) * np.exp(-2j * math.pi * u * patch.col)
+            ground += patch.spectrum(u, v) * phase
         folded += ground * otf
     return np.ascontiguousarray(np.fft.irfft2(folded, (rows, cols))[: shape[0], : shape[1]])
 
@@ -230,9 +231,8 @@ def render_patches(
 def _require_shapes(patches: Any) -> None:
     for number, one in enumerate(require_all(object, "patches", patches), start=1):
         if isinstance(one, type) or not callable(getattr(one, "spectrum", None)):
-            raise OptionError(
-                f"number {number} of patches is {one!r:.80}: give Patch(...) or Point(...)"
-            )
+            found = f"number {number} of patches is {one!r:.80}"
+            raise OptionError(f"{found}: give Patch(...) or Point(...)")
 
 
 @lru_cache(maxsize=4)
