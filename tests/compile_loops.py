@@ -22,7 +22,8 @@ def main() -> None:
     edge, _ = simulate.edge(sensor, angle_deg=6, shape=(60, 60), snr=100, rng=rng)
     for method in METHODS:
         ac.measure_edge(edge, method=method)
-    ac.measure_edges(simulate.checkerboard(sensor, snr=100, rng=rng).image)
+    board = simulate.checkerboard(sensor, snr=100, rng=rng).image
+    ac.combine(ac.measure_edges(board).measurements)
     pulse, _ = simulate.pulse(sensor, snr=100, rng=rng)
     for method in PULSE_METHODS:
         ac.measure_pulse(pulse, width_px=3.0, method=method)
