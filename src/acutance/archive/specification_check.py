@@ -188,7 +188,7 @@ def _trusted_words(requirement: Requirement) -> str:
 
 
 def _by_trend(requirement: Requirement, trend: Trend) -> Answer:
-    first, last = float(trend.images.when[0]), float(trend.images.when[-1])
+    first, last = trend.images.first, trend.images.last
     year = last if requirement.on is None else decimal_year(requirement.on)
     density = trend.mean(year, season=False)
     below = density.probability_below(requirement.limit)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 
 from acutance.archive.specification import Requirement
 from acutance.archive.specification_check import check_requirement
-from acutance.archive.trends import Series, fit_trend
+from acutance.archive.trends import Series, Trend, date_of, fit_trend
 from acutance.archive.trends.images import (
     ImageMeans,
     image_means,
@@ -64,6 +65,27 @@ def test_joined_images_scatter_beyond_what_is_stated_of_them(images: int) -> Non
     assert np.mean([one.scatter for one in many]) == pytest.approx(0.04, rel=0.05)
     # Deviations that are stated too large leave no scatter.
     assert places_of(1 + 0.02 * rng.normal(size=images), 0.03).scatter == 0
+
+
+def test_joined_images_are_from_the_first_to_the_last_of_them(series_of: Make) -> None:
+    """Places lie in the middle of theirs: a trend ended some days before its last image."""
+    series = series_of(images=1000, years=10.0)
+    trend = fit_trend(series)
+    assert trend.images.are_joined
+    assert trend.images.when[-1] < series.when.max() - 2 / 365
+    days = date_of(series.when.min()), date_of(series.when.max())
+    assert (trend.first, trend.last) == days
+    assert f"{days[0]} to {days[1]})" in trend.summary()
+    assert trend.at(trend.last).value == pytest.approx(trend.level.value, rel=1e-3)
+    assert trend.crosses(0.1 * LEVEL).when[0] == series.when.max()
+    document = json.loads(json.dumps(trend.to_dict()))
+    ends = [document["bands"]["when"][at] for at in (0, -1)]
+    assert ends == [series.when.min(), series.when.max()]
+    kept = Trend.from_dict(document)
+    assert (kept.first, kept.last) == days
+    # Documents of earlier versions do not tell.
+    del document["images"]["ends"]
+    assert Trend.from_dict(document).last == date_of(float(trend.images.when[-1]))
 
 
 def test_a_stated_deviation_counts_once_in_what_another_image_gives(series_of: Make) -> None:

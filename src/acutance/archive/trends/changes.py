@@ -111,7 +111,7 @@ def found_changes(posterior: TrendPosterior, images: ImageMeans) -> tuple[Change
         return ()
     those = posterior.those(with_them)
     found = (_change(posterior, those, place) for place in range(count))
-    days = (date_of(float(images.when[-1])) - date_of(float(images.when[0]))).days
+    days = (date_of(images.last) - date_of(images.first)).days
     return tuple(change for change in found if _is_reported(change, days))
 
 

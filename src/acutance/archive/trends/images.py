@@ -55,6 +55,9 @@ class ImageMeans(ShortRepr):
         Number of images: that of the places, or more where very many were joined.
     scatter : float
         Between the images that were joined, beyond their stated deviations; 0 where none were.
+    ends : (float, float) or None
+        Years with decimals of the first and of the last image, where these were joined: places lie
+        in the middle of theirs.
     """
 
     when: Floats
@@ -67,6 +70,17 @@ class ImageMeans(ShortRepr):
     systematic_std: float
     images: int
     scatter: float = 0.0
+    ends: tuple[float, float] | None = None
+
+    @property
+    def first(self) -> float:
+        """Year with decimals of the first image."""
+        return float(self.when[0]) if self.ends is None else self.ends[0]
+
+    @property
+    def last(self) -> float:
+        """Year with decimals of the last image."""
+        return float(self.when[-1]) if self.ends is None else self.ends[1]
 
     @property
     def size(self) -> int:
@@ -99,22 +113,29 @@ class ImageMeans(ShortRepr):
     def to_dict(self) -> dict[str, Any]:
         """All fields, arrays as lists."""
         found = {one.name: getattr(self, one.name) for one in fields(self)}
-        return {
-            name: value.tolist() if isinstance(value, np.ndarray) else value
-            for name, value in found.items()
-        }
+        return {name: _plain(value) for name, value in found.items()}
 
     @classmethod
     def from_dict(cls, document: Mapping[str, Any]) -> ImageMeans:
         """What `to_dict` wrote."""
         fields_of: dict[str, Any] = {
-            name: _array(name, value) if isinstance(value, list) else value
+            name: _listed(name, value) if isinstance(value, list) else value
             for name, value in document.items()
         }
         return cls(**fields_of)
 
 
-def _array(name: str, listed: list[float]) -> NDArray[Any]:
+def _plain(value: Any) -> Any:
+    """An array or a pair as a list."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return list(value) if isinstance(value, tuple) else value
+
+
+def _listed(name: str, listed: list[float]) -> Any:
+    """A list as the array or the pair that it was."""
+    if name == "ends":
+        return tuple(listed)
     return np.array(listed, np.int64 if name in ("count", "label") else float)
 
 
@@ -213,7 +234,7 @@ def joined_images(images: ImageMeans, most: int) -> ImageMeans:
         np.bincount(place, images.when) / count, value, scale**2 / count,
         np.bincount(place, images.count).astype(np.int64), np.full(most, -1),
         images.within_std, images.typical_std, images.systematic_std,
-        images.images, float(np.sqrt(beyond)),
+        images.images, float(np.sqrt(beyond)), (images.first, images.last),
     )  # fmt: skip
 
 

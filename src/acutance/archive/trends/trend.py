@@ -121,22 +121,22 @@ class Trend(ShortRepr):
     @property
     def first(self) -> datetime.date:
         """Day of the first image."""
-        return date_of(float(self.images.when[0]))
+        return date_of(self.images.first)
 
     @property
     def last(self) -> datetime.date:
         """Day of the last image."""
-        return date_of(float(self.images.when[-1]))
+        return date_of(self.images.last)
 
     @cached_property
     def level(self) -> Estimate:
         """The sensor's mean on the day of the last image, without the season."""
-        return self._estimate(self.mean(float(self.images.when[-1]), season=False))
+        return self._estimate(self.mean(self.images.last, season=False))
 
     @cached_property
     def rate(self) -> NormalMixture:
         """The posterior of the drift per year at the end of the series."""
-        return self._drifting.rate(float(self.images.when[-1]))
+        return self._drifting.rate(self.images.last)
 
     @cached_property
     def rate_per_year(self) -> Estimate:
@@ -158,7 +158,7 @@ class Trend(ShortRepr):
     @cached_property
     def has_scale(self) -> bool:
         """Whether the level is told from 0, of which changes have no per cent."""
-        return is_told_from_zero(self.mean(float(self.images.when[-1]), season=False))
+        return is_told_from_zero(self.mean(self.images.last, season=False))
 
     @property
     def steps_are_sought(self) -> bool:
@@ -293,7 +293,7 @@ class Trend(ShortRepr):
             raise OptionError(f"the limit {limit:g} of {self.metric} is never passed: {fault}")
         falls = not self.metric.startswith(_LESS_IS_SHARPER) if is_minimum is None else is_minimum
         return find_crossing(
-            self._drifting, self.images.systematic_std, float(self.images.when[-1]), limit,
+            self._drifting, self.images.systematic_std, self.images.last, limit,
             falls, within_years,
         )  # fmt: skip
 
@@ -311,7 +311,7 @@ class Trend(ShortRepr):
             If they are no list of finite numbers.
         """
         if years is None:
-            years = np.linspace(self.images.when[0], self.images.when[-1], _DATES)
+            years = np.linspace(self.images.first, self.images.last, _DATES)
         years = require_floats("years", years)
         if years.ndim != 1 or not years.size or not np.isfinite(years).all():
             raise OptionError(f"years are {years!r:.80}: give a list of years, with decimals")

@@ -123,12 +123,12 @@ class TrendPlanOptions:
             )
         images, level = trend.images, abs(trend.level.value)
         when = np.repeat(images.when, images.images_by_place)
-        span = float(when[-1] - when[0])
+        span = images.last - images.first
         found: dict[str, Any] = {
             "images_per_year": (min(max((when.size - 1) / span, 0.1), 366.0),),
             "scatter": min(trend.relative_scatter, 1.0),
             "std": min(images.image_std / level, 1.0),
-            "earlier": tuple((when[-1] - when).tolist()),
+            "earlier": tuple((images.last - when).tolist()),
         }
         return cls(**{**found, **others})
 

@@ -71,16 +71,15 @@ def draw_trend(axes: Axes, trend: Trend, *, limit: float | Sequence[float] | Non
     limit : float or sequence of float, optional
     """
     limits = sorted(set(np.atleast_1d([] if limit is None else limit).tolist()))
-    years = trend.images.when
-    last = float(years[-1])
-    ahead = last + max(_AHEAD * (last - float(years[0])), 1 / 24)
-    bands = trend.bands(np.union1d(np.linspace(years[0], ahead, _DATES), [last]))
+    first, last = trend.images.first, trend.images.last
+    ahead = last + max(_AHEAD * (last - first), 1 / 24)
+    bands = trend.bands(np.union1d(np.linspace(first, ahead, _DATES), [last]))
     _draw_bands(axes, bands, last)
     low, high = _range(trend, bands, limits)
     _draw_images(axes, trend, low, high)
     axes.set_ylim(low, high)
     _draw_limits(axes, limits)
-    axes.set_xlim(axis_days(years[0] - 0.02 * (ahead - years[0])), axis_days(ahead))
+    axes.set_xlim(axis_days(first - 0.02 * (ahead - first)), axis_days(ahead))
     _draw_changes(axes, trend)
     date_axis(axes)
     words = METRIC_WORDS[trend.metric]
