@@ -194,6 +194,20 @@ def test_a_combination_beyond_all_its_members_is_of_no_sensor(together, edges, m
     assert beyond([-0.1, *(count - 1) * [0.1]]).passed
 
 
+def test_of_measurements_without_any_chance_the_one_farthest_off_fits_least():
+    """Chances of two were 0: the first of them was named, as if all others contradicted it."""
+    sharpened, wide = (simulate.reference_systems()[name] for name in ("sharpened", "wide"))
+    four = [
+        edge(6, "across", 1, sharpened), edge(7, "along", 2, sharpened),
+        edge(32, "across", 3, sharpened), edge(32, "across", 4, wide),
+    ]  # fmt: skip
+    forms = (("gaussian",), ("gaussian", "sharpening"))
+    found = ac.combine(four, names=["a", "b", "c", "wide"], options=ac.CombineOptions(forms=forms))
+    assert sum(part.chi_square.p_value == 0 for part in found.parts) > 1
+    (worst,) = (check for check in found.checks if check.name == "worst_member")
+    assert worst.message.startswith("wide fits least")
+
+
 def test_members_that_agree_have_the_combination_between_them(together):
     (beyond,) = (check for check in together.checks if check.name == "beyond_members")
     assert beyond.value < 0.001

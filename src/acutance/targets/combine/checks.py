@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -26,6 +27,8 @@ COMBINE_CHECKS = (
 
 _DISTINCT_DEG = 15.0
 _SURE_STDS = 2.0
+_NO_CHANCE = 1e-30
+"""Chances below are none, as normal errors have them, and which is the least tells nothing."""
 
 
 def check_combination(
@@ -84,9 +87,14 @@ def _agreement(fit: CombinedFit, limits: Limits) -> Check:
     )
     return answer(
         "agreement", found.p_value,
-        f"chi-square is {found.value:.0f}, {found.expected:.0f} being expected if the measurements "
-        f"agree within their deviations (p {found.p_value:.2g}); {widened}", limits,
+        f"chi-square is {_size(found.value)}, {_size(found.expected)} being expected if the "
+        f"measurements agree within their deviations (p {found.p_value:.2g}); {widened}", limits,
     )  # fmt: skip
+
+
+def _size(chi_square: float) -> str:
+    """A chi-square in words: of scans less than one may be expected."""
+    return f"{chi_square:.2g}" if chi_square < 10 else f"{chi_square:.0f}"
 
 
 def _worst(inputs: Sequence[MeasuredInput], fit: CombinedFit, limits: Limits) -> Check:
@@ -95,15 +103,22 @@ def _worst(inputs: Sequence[MeasuredInput], fit: CombinedFit, limits: Limits) ->
     member = fit.members[worst]
     return answer(
         "worst_member", min(1.0, len(fit.members) * member.p_value),
-        f"{inputs[worst].name} fits least: its chi-square is {member.value:.0f}, "
-        f"{member.expected:.0f} being expected", limits,
+        f"{inputs[worst].name} fits least: its chi-square is {_size(member.value)}, "
+        f"{_size(member.expected)} being expected", limits,
     )  # fmt: skip
 
 
 def _fits_least(fit: CombinedFit) -> int:
-    """Which measurement has the smallest chance."""
-    chances = [one.p_value for one in fit.members]
-    return int(np.nanargmin(chances)) if np.isfinite(chances).any() else 0
+    """Which measurement has the smallest chance; of those that have none, the largest chi-square
+    over what is expected."""
+
+    def order(place: int) -> tuple[float, float]:
+        one = fit.members[place]
+        if not math.isfinite(one.p_value):
+            return math.inf, 0.0
+        return max(one.p_value, _NO_CHANCE), -one.value / one.expected
+
+    return min(range(len(fit.members)), key=order)
 
 
 def _plain(fit: CombinedFit, limits: Limits) -> Check:
@@ -111,7 +126,7 @@ def _plain(fit: CombinedFit, limits: Limits) -> Check:
     return answer(
         "plain_sensor", plain.p_value,
         "the best product of Gaussian, detector, smear, halo, charge trail and aperture has "
-        f"chi-square {plain.value:.0f}, {plain.expected:.0f} being expected", limits,
+        f"chi-square {_size(plain.value)}, {_size(plain.expected)} being expected", limits,
     )  # fmt: skip
 
 
