@@ -191,7 +191,8 @@ def _chi_squares(
     Whitened errors e of covariance S leave the residuals ``M e``, M taking out what the
     parameters follow; a sum of their squares over a curve has the mean ``tr(P M S M)`` and the
     variance ``2 tr((P M S M)^2)``, P choosing the curve, and of each curve the `shapes` (n, k)
-    that are judged: a prior makes errors in other directions smaller than their deviations.
+    that are judged: a prior makes errors in other directions smaller than their deviations. What
+    forms miss of a curve that is a mean over others is beside S.
     """
     best = forms[0]
     near = LitCurves(data, FormsOnPlane(forms, data.plane).mean)
@@ -199,7 +200,7 @@ def _chi_squares(
     slopes = near.of(best.slopes_on(data.plane).T).T
     inverse = np.linalg.inv(slopes.T @ slopes + np.diag(best.prior_std**-2.0))
     left = near.apart(np.eye(residual.size)) - slopes @ inverse @ slopes.T
-    covariance = left @ data.covariance @ left.T
+    covariance = left @ data.covariance @ left.T + data.missed
     axes = [np.eye(residual.size)[:, part] for part in data.parts]
     if shapes is not None:
         ways = near.of(shapes.T).T
