@@ -511,3 +511,22 @@ def test_a_measurement_that_is_not_what_its_pixels_say_counts_for_less():
     # Of twelve values one goes into the place, one into the light.
     assert wrong[0] == pytest.approx(10.0)
     assert wrong[1] < 0.5 * right[1]
+
+
+def test_what_a_curve_of_forms_leaves_of_its_own_values_is_no_disagreement():
+    """A scan of few edges leaves some: two that agree had 3 times the expected chi-square."""
+    form, directions = SensorForm(("gaussian",)), np.radians([0.0, 90.0])[:, None]
+    u, v = (FREQ * np.cos(directions)).ravel(), (FREQ * np.sin(directions)).ravel()
+    plane, rng = Plane(u, v), np.random.default_rng(6)
+    otf = form.otf_on(form.mean, plane)
+    factor = 0.02 * form.slopes_on(form.mean, plane)
+    root = 20.0 * np.eye(u.size, dtype=complex)
+    off = rng.standard_normal(u.size)
+    off *= 3 / np.linalg.norm(off)
+    values = stacked(root).T @ stacked(otf) + off
+    likelihood = OtfLikelihood(root, np.zeros(u.size), values).of_known_light()
+    scan = OtfSamples("scan", u, v, otf, factor, likelihood, is_about_curve=True)
+    plain = combine_curves([scan], forms=[("gaussian",)]).plain
+    assert 4 < plain.value < 9
+    assert plain.expected == pytest.approx(plain.value, rel=0.4)
+    assert plain.p_value > 0.1

@@ -60,8 +60,8 @@ class OtfSamples:
     likelihood : OtfLikelihood, optional
         What the pixels alone say, where that is known.
     is_about_curve : bool, optional
-        Whether the likelihood is largest at the curve, which forms of sensors were fitted to: what
-        these do not follow of the pixels is in none of its values.
+        Whether the likelihood is largest next to the curve, a mean over forms of sensors that were
+        fitted before: what these do not follow of the pixels is in none of its values.
     """
 
     name: str
@@ -119,6 +119,13 @@ class OtfSamples:
         wide = stacked(self.factor)
         value, vector = np.linalg.eigh(wide @ wide.T)
         return np.asarray(self.whitening @ (vector * np.sqrt(np.maximum(value, 0.0))) @ vector.T)
+
+    @property
+    def own_residual(self) -> Floats:
+        """What the curve leaves of the values, (size,); of a posterior nothing."""
+        if self.likelihood is None:
+            return np.zeros(self.size)
+        return self.likelihood.residual(self.otf)
 
     @cached_property
     def whitening(self) -> Floats:
@@ -256,11 +263,15 @@ class WhitenedCurves:
 
     @cached_property
     def missed(self) -> Floats:
-        """Covariance of what forms miss of curves that are a mean over forms, (size, size)."""
+        """Covariance of what forms miss of curves that are a mean over forms, (size, size).
+
+        With what the curves themselves leave of their values: of few edges some.
+        """
         total = np.zeros((self.values.size, self.values.size))
         for part, one in zip(self.parts, self.curves, strict=True):
             if one.is_about_curve:
                 total[part, part] = _MISSED**2 * one.whitened_factor @ one.whitened_factor.T
+                total[part, part] += np.outer(one.own_residual, one.own_residual)
         return total
 
     @cached_property
