@@ -145,21 +145,6 @@ def test_a_level_that_is_never_reached_is_undefined() -> None:
     assert math.isnan(metrics.mtf_crossing(flat, 0.5).value)
 
 
-@pytest.mark.parametrize("place_px", [0.0, 1e-9, 0.03, 0.07])
-def test_a_level_is_found_between_the_start_and_the_next_place(place_px: float) -> None:
-    x = np.arange(-100, 101) * 0.1
-    # So steep that 60 % is passed before the place that follows 50 %.
-    sigma = 0.25
-    esf = Esf(x, ndtr((x - place_px) / sigma), np.zeros((x.size, 0)))
-    expected = 0.1 / (sigma * ndtri(0.6))
-    assert metrics.edge_slope(esf).value == pytest.approx(expected, rel=3e-3)
-    for level, way in ((0.55, 1), (0.45, -1)):
-        found = esf.passing(level, place_px, way).value
-        assert found == pytest.approx(place_px + sigma * ndtri(level), abs=1e-3)
-    assert math.isnan(esf.passing(0.45, place_px, 1).value)
-    assert math.isnan(esf.passing(0.55, place_px, -1).value)
-
-
 def test_overshoot_and_giqe_h_of_a_sharpened_edge() -> None:
     x = DISTANCE
     bump = 0.1 * np.exp(-0.5 * ((x - 1.5) / 0.4) ** 2) - 0.1 * np.exp(-0.5 * ((x + 1.5) / 0.4) ** 2)

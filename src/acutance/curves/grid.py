@@ -270,22 +270,17 @@ def crossing(grid: Floats, values: Floats, level: float, start: float, direction
 
     Returns ``nan`` when it never does.
     """
-    if math.isnan(start):
-        return math.nan
-    start = min(max(start, grid.item(0)), grid.item(-1))
-    # The start itself comes first, and then the places beyond it: between two it may have passed
-    # the level that the next one is above.
-    first = int(grid.searchsorted(start, "right" if direction > 0 else "left"))
-    first -= direction < 0
+    origin = int(grid.searchsorted(start))
+    if direction < 0:
+        origin = min(origin, grid.size - 1)
     # Crossings are near: plain numbers one by one are faster than arrays of all of them.
-    numbers: list[float] = values[first::direction].tolist() if first >= 0 else []
-    here = float(Cubic.at(grid, start).sample(values))
-    change = next((k for k, one in enumerate(numbers) if (one > level) != (here > level)), -1)
-    if change < 0:
+    numbers: list[float] = values[origin::direction].tolist()
+    change = next((k for k, one in enumerate(numbers) if (one > level) != (numbers[0] > level)), 0)
+    if change == 0:
         return math.nan
-    last = first + direction * change
-    x0, y0 = (grid.item(last - direction), numbers[change - 1]) if change else (start, here)
-    x1, y0, y1 = grid.item(last), y0 - level, numbers[change] - level
+    last = origin + direction * change
+    x0, x1 = grid.item(last - direction), grid.item(last)
+    y0, y1 = numbers[change - 1] - level, numbers[change] - level
     guess = x0 + (x1 - x0) * y0 / (y0 - y1)
     steepness = (y1 - y0) / (x1 - x0)
     # One step on the cubic removes what the chord leaves.
