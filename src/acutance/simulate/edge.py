@@ -16,7 +16,7 @@ from acutance.geometry.angles import wrap_direction
 from acutance.geometry.line import Line, Orientation
 from acutance.optics.sensor import Sensor, normal_direction_deg, require_sensor
 from acutance.simulate.ground import GroundNoise
-from acutance.simulate.limits import require_shape
+from acutance.simulate.limits import require_darker, require_shape
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.resample import Regrid, render_regridded
 
@@ -159,11 +159,7 @@ def edge(
     require_optional(Regrid, regrid=regrid)
     require_optional(GroundNoise, ground_noise=ground_noise)
     require_finite(dark=dark, bright=bright, offset_px=offset_px)
-    if not dark < bright:
-        raise ModelError(
-            f"dark is {dark:g} and bright {bright:g}: dark has to be lower; "
-            'polarity="falling" (--falling) turns the edge round'
-        )
+    require_darker(dark, bright, 'polarity="falling" (--falling) turns the edge round')
     line = line_through_centre(shape, angle_deg, orientation, polarity).moved(offset_px, 0.0)
     added = noise_of_snr(bright - dark, snr, noise, dark)
 

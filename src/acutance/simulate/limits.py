@@ -1,11 +1,11 @@
-"""What can be rendered: images of a size that fits into memory."""
+"""What can be rendered: images of a size that fits into memory, a dark level below a bright one."""
 
 from __future__ import annotations
 
 from acutance import arguments
 from acutance.errors import ModelError
 
-__all__ = ["MAX_PIXELS", "MAX_SCENE_PIXELS", "require_shape"]
+__all__ = ["MAX_PIXELS", "MAX_SCENE_PIXELS", "require_darker", "require_shape"]
 
 MAX_PIXELS = 25_000_000
 """Of an image of a single target, which takes about 120 bytes a pixel while it is rendered."""
@@ -29,4 +29,18 @@ def require_shape(shape: tuple[int, int], most: int = MAX_PIXELS) -> None:
         raise ModelError(
             f"an image of {rows} by {cols} px was requested: rows and columns have to be 1 or "
             f"more, and {most / 1e6:.0f} million pixels are the most that can be rendered"
+        )
+
+
+def require_darker(dark: float, bright: float, advice: str, *, of: str = "") -> None:
+    """Refuse a dark level of something that is not below the bright one, with advice.
+
+    Raises
+    ------
+    ModelError
+        Names both.
+    """
+    if not dark < bright:
+        raise ModelError(
+            f"{of}dark is {dark:g} and bright {bright:g}: dark has to be lower; {advice}"
         )

@@ -25,7 +25,7 @@ from acutance.geometry.line import Line
 from acutance.optics.sensor import Sensor, require_sensor
 from acutance.simulate.bars import BarsTruth
 from acutance.simulate.edge import Truth
-from acutance.simulate.limits import require_shape
+from acutance.simulate.limits import require_darker, require_shape
 from acutance.simulate.noise import Noise, noise_of_snr
 from acutance.simulate.points import PointsTruth
 from acutance.simulate.pulse import PulseTruth
@@ -163,11 +163,7 @@ def checkerboard(
     require_texture(texture_std)
     require_finite(dark=dark, bright=bright, ground=ground, texture_grain_px=texture_grain_px)
     require_all(Strip, "strips", strips)
-    if not dark < bright:
-        raise ModelError(
-            f"dark is {dark:g} and bright {bright:g}: dark has to be lower; the bright tiles are "
-            "the upper left and the lower right one"
-        )
+    require_darker(dark, bright, "the bright tiles are the upper left and the lower right one")
     _require_room(shape, tile_px, turn_deg, centre)
     board = _tiles(centre, tile_px, turn_deg, dark - ground, bright - ground)
     image = ground + render_patches(sensor, board, shape)

@@ -13,7 +13,7 @@ from acutance.errors import ModelError
 from acutance.geometry.line import Line
 from acutance.optics.block import require
 from acutance.optics.sensor import normal_direction_deg
-from acutance.simulate.limits import MAX_SCENE_PIXELS, require_shape
+from acutance.simulate.limits import MAX_SCENE_PIXELS, require_darker, require_shape
 from acutance.simulate.scene import Patch
 
 __all__ = ["EdgeTarps", "PulseTarp", "tarp_patches", "tarp_region", "tarp_rows"]
@@ -59,11 +59,8 @@ class EdgeTarps:
         require(self, 8.0, side_px=self.side_px)
         require(self, -math.inf, row=self.row, col=self.col, normal_deg=self.normal_deg)
         require(self, -math.inf, dark=self.dark, bright=self.bright)
-        if not self.dark < self.bright:
-            raise ModelError(
-                f"EdgeTarps: dark is {self.dark:g} and bright {self.bright:g}: dark has to be "
-                "lower; turn the normal by 180 degrees to exchange the tarps"
-            )
+        advice = "turn the normal by 180 degrees to exchange the tarps"
+        require_darker(self.dark, self.bright, advice, of="EdgeTarps: ")
 
 
 @dataclass(frozen=True)
