@@ -13,9 +13,14 @@ from acutance.curves.direction import unit_vector
 from acutance.curves.grid import Floats
 from acutance.geometry.angles import angle_to_grid, is_nearer_columns, wrap_direction
 
-__all__ = ["Line", "Orientation"]
+__all__ = ["Line", "Orientation", "axis_names"]
 
 Orientation = Literal["across", "along"]
+
+
+def axis_names(along_track: str) -> tuple[Orientation, Orientation]:
+    """What the axes x and y of an image are called: x across, unless it was declared along."""
+    return ("along", "across") if along_track == "x" else ("across", "along")
 
 
 @dataclass(frozen=True)

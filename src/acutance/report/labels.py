@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 __all__ = [
     "MISSING",
     "NumberWords",
-    "axis_names",
     "count_edges",
     "csv_column",
     "describe_image",
@@ -281,11 +280,6 @@ def _rer_centre(result: Measurement | Record) -> str:
     """About which centre RER is taken: the stated one, else that of the method."""
     stated = result.options.get("rer_centre")
     return stated or next(one.rer_centre for one in result.directions.values())
-
-
-def axis_names(along_track: str) -> tuple[str, str]:
-    """What the axes x and y of an image are called: x across, unless it was declared along."""
-    return ("along", "across") if along_track == "x" else ("across", "along")
 
 
 def _gsd_words(pixel_gsd_m: tuple[float, float], along_track: str) -> str:

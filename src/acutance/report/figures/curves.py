@@ -11,8 +11,9 @@ import numpy as np
 from acutance.curves import Otf2d
 from acutance.curves.grid import Floats, crossing
 from acutance.curves.metrics import NYQUIST_CPP
+from acutance.geometry.line import axis_names
 from acutance.report.figures.panel import Panel, on_axes
-from acutance.report.labels import axis_names, spread_name, transfer_name, word_estimate
+from acutance.report.labels import spread_name, transfer_name, word_estimate
 from acutance.report.paper import BLUE, FAINT, GREEN, INK, SHADE, VERMILION
 
 if TYPE_CHECKING:

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from acutance.curves.grid import Floats
+from acutance.geometry.line import axis_names
 from acutance.report.figures.curves import axis_labels
 from acutance.report.figures.labels_apart import labels_apart
 from acutance.report.figures.panel import Panel, on_axes
 from acutance.report.figures.pixels import show_pixels
-from acutance.report.labels import axis_names
 from acutance.report.paper import BLUE, FAINT, INK, ORANGE, VERMILION
 
 if TYPE_CHECKING:

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from acutance.geometry.line import axis_names
 from acutance.report.html import Table
 from acutance.report.labels import (
-    axis_names,
     format_number,
     transfer_name,
     word_estimate,

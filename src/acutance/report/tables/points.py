@@ -6,8 +6,9 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from acutance.arguments import require_class
+from acutance.geometry.line import axis_names
 from acutance.report.html import Table
-from acutance.report.labels import MISSING, axis_names, format_number, word_estimate, write_fixed
+from acutance.report.labels import MISSING, format_number, word_estimate, write_fixed
 
 if TYPE_CHECKING:
     from acutance.targets.points import Pads, PointsMeasurement

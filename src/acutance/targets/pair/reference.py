@@ -14,6 +14,7 @@ from acutance.curves.grid import Floats
 from acutance.curves.short_repr import ShortRepr
 from acutance.errors import OptionError
 from acutance.geometry.angles import axis_difference, wrap_axis
+from acutance.geometry.line import axis_names
 from acutance.optics import Detector, Gaussian, Sensor
 from acutance.raster import Gsd
 from acutance.raster.gsd import gsd_in_words
@@ -228,9 +229,8 @@ def _of_record(reference: Record, origin: str = "the reference") -> MeasuredCurv
             return MeasuredCurves(only, only, gsd_m, None if normal is None else float(normal))
     except (AttributeError, KeyError, TypeError, ValueError) as error:
         raise OptionError(f"{origin} holds no MTF that can be read ({error})") from error
-    # Across track is along the rows of pixels only where the columns are the track.
-    names = ("across", "along") if reference.image.along_track == "y" else ("along", "across")
-    return MeasuredCurves(curves[names[0]], curves[names[1]], gsd_m)
+    x, y = axis_names(reference.image.along_track)
+    return MeasuredCurves(curves[x], curves[y], gsd_m)
 
 
 def _recorded(direction: RecordedDirection) -> Mtf:
