@@ -22,6 +22,7 @@ def test_a_table_says_that_a_target_was_measured_again(twice: Archive) -> None:
     (note,) = (one for one in twice.table(("target",), ("rer",)).notes if "runs" in one)
     assert note.startswith("1 target of single images was measured more than once")
     assert "(runs 1, 2)" in note
+    assert "and counts each time" in note
 
 
 def test_a_table_of_one_run_does_not(twice: Archive) -> None:

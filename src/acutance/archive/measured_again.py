@@ -17,7 +17,7 @@ _SAME: Final = ("image_id", "band", "site", "target", "kind", "method", "orienta
 _NO_RUN: Final = -1
 
 
-def measured_again_notes(rows: Columns, mask: NDArray[np.bool_] | None = None) -> Iterator[str]:
+def measured_again_notes(rows: Columns, mask: NDArray[np.bool_]) -> Iterator[str]:
     """The note, if targets with names stand in a mean by several runs, in the same image and band.
 
     They have the same pixels, and their noise does not average out.
@@ -26,24 +26,24 @@ def measured_again_notes(rows: Columns, mask: NDArray[np.bool_] | None = None) -
     ----------
     rows : Columns
         Of `acutance.Archive.measurements`.
-    mask : (n,) bool array, optional
+    mask : (n,) bool array
         Which of the rows are meant.
     """
     if "run" not in rows.columns:
         return
-    ours = np.ones(len(rows), bool) if mask is None else mask
     runs: dict[tuple[object, ...], set[int]] = {}
-    parts = [rows[name][ours].tolist() for name in _SAME]
-    written = np.nan_to_num(rows["run"][ours], nan=_NO_RUN).astype(int).tolist()
+    parts = [rows[name][mask].tolist() for name in _SAME]
+    written = np.nan_to_num(rows["run"][mask], nan=_NO_RUN).astype(int).tolist()
     for *same, run in zip(*parts, written, strict=True):
         runs.setdefault(tuple(same), set()).add(run)
     target = _SAME.index("target")
     again = [own for same, own in runs.items() if len(own) > 1 and same[target] is not None]
     if again:
         numbers = sorted(set().union(*again) - {_NO_RUN})
+        were, count = ("was", "counts") if len(again) == 1 else ("were", "count")
         yield (
-            f"{counted(len(again), 'target')} of single images "
-            f"{'was' if len(again) == 1 else 'were'} measured more than once, with other options "
-            f"or another reading of the pixels (runs {', '.join(map(str, numbers))}), and "
-            "count each time, though the noise is the same: select one run (--run)."
+            f"{counted(len(again), 'target')} of single images {were} measured more than once, "
+            "with other options or another reading of the pixels (runs "
+            f"{', '.join(map(str, numbers))}), and {count} each time, though the noise is the "
+            "same: select one run (--run)."
         )

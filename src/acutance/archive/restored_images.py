@@ -33,22 +33,21 @@ def restored_sources(record: Record) -> dict[str, Any]:
     return {} if applied is None else {"notes": [f"restored by {applied}: {OF_RESTORED}"]}
 
 
-def restored_notes(rows: Columns, mask: NDArray[np.bool_] | None = None) -> Iterator[str]:
+def restored_notes(rows: Columns, mask: NDArray[np.bool_]) -> Iterator[str]:
     """The note of a mean over images of which some were restored.
 
     Parameters
     ----------
     rows : Columns
         Of `acutance.Archive.measurements`.
-    mask : (n,) bool array, optional
+    mask : (n,) bool array
         Which of the rows are meant.
     """
     restored = rows.columns.get("restored")
     if restored is None:
         return
-    ours = np.ones(len(rows), bool) if mask is None else mask
-    every = np.unique(rows["image_id"][ours]).size
-    sharpened = np.unique(rows["image_id"][ours & restored]).size
+    every = np.unique(rows["image_id"][mask]).size
+    sharpened = np.unique(rows["image_id"][mask & restored]).size
     if not sharpened:
         return
     if sharpened == every:

@@ -229,10 +229,11 @@ def table_by(
     found = [_row(numbers, key, _mask(keys, key), metrics) for key in ordered]
     fixed = max(len(lead), max((names.index(one) + 1 for one in _NEVER_MIXED if one in by
                                 and len(set(words[one])) > 1), default=0))  # fmt: skip
+    every = np.ones(len(rows), bool)
     return MeasurementTable(
         names, tuple(metrics), tuple(_with_averages(numbers, found, keys, fixed, metrics)),
-        (*mixed_methods_notes(words, by), *restored_notes(rows),
-         *measured_again_notes(rows)),
+        (*mixed_methods_notes(words, by), *restored_notes(rows, every),
+         *measured_again_notes(rows, every)),
     )  # fmt: skip
 
 
