@@ -35,7 +35,8 @@ __all__ = [
     "table_of",
 ]
 
-_NAMED = r"(srgb|log)(:.*)?|\d*\.?\d+"
+_NUMBER = r"\d*\.?\d+"
+_NAMED = rf"(srgb|log)(:.*)?|{_NUMBER}"
 _SRGB_KNEE = 0.04045
 _SRGB_SLOPE = 12.92
 _SRGB_OFFSET = 0.055
@@ -360,7 +361,7 @@ def _rows(path: str) -> Floats:
     try:
         text = Path(path).read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
-        if table_of(path) is None:
+        if re.fullmatch(_NUMBER, path):
             raise OptionError(
                 f"the curve {path!r} is a text: a power law is the number {path} "
                 f"(linearize={path}, --gamma {path})"
