@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from acutance.errors import RegionError
@@ -74,6 +74,7 @@ def test_a_hole_is_left_out():
     assert not mask[3:5, 4:7].any()
 
 
+@settings(deadline=None)
 @given(
     st.lists(st.tuples(st.floats(-20, 40), st.floats(-20, 40)), min_size=3, max_size=9, unique=True)
 )
@@ -92,6 +93,7 @@ def test_the_mask_is_that_of_the_even_odd_rule(corners):
         assert mask[row - box.row, col - box.col] == inside
 
 
+@settings(deadline=None)
 @given(
     st.lists(
         st.tuples(st.floats(-20, 40), st.floats(-20, 40)), min_size=3, max_size=7, unique=True
